@@ -320,8 +320,9 @@ namespace Mpm {
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int GatherFn(IntPtr user, long value, long* all);
 
-  /// <summary>For transports that move only when called: called between send and receive, once the blocks that nobody
-  /// waits for have been worked on; may be NULL.</summary>
+  /// <summary>For transports that move only when called: called once between send and receive of a sum on nodes,
+  /// after the first of up to eight groups of the blocks that nobody waits for; the others follow after
+  /// receive.</summary>
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate void TransportPollFn(IntPtr user);
 
@@ -499,8 +500,9 @@ namespace Mpm {
     public IntPtr reduce;
     /// <summary>one integer of each part.</summary>
     public IntPtr gather;
-    /// <summary>For transports that move only when called: called between send and receive, once the blocks that
-    /// nobody waits for have been worked on; may be NULL.</summary>
+    /// <summary>For transports that move only when called: called once between send and receive of a sum on nodes,
+    /// after the first of up to eight groups of the blocks that nobody waits for; the others follow after
+    /// receive.</summary>
     public IntPtr poll;
     /// <summary>passed to all of them.</summary>
     public IntPtr user;

@@ -908,16 +908,16 @@ f(user, op, count, values): @cfunction(f, Int32, (Ptr{Cvoid}, Int32, Int64, Ptr{
 const mpm_reduce_fn = Ptr{Cvoid}
 
 """
-all[parts]: value of each part (collective). Only when particles are added or sets adapt, and when implicit steps
-number their unknowns. Returns as mpm_send_fn.
+all[parts]: value of each part (collective). Only when particles are added, sets adapt, implicit steps number their
+unknowns or pieces of a state are loaded. Returns as mpm_send_fn.
 
 f(user, value, all): @cfunction(f, Int32, (Ptr{Cvoid}, Int64, Ptr{Int64}))
 """
 const mpm_gather_fn = Ptr{Cvoid}
 
 """
-For transports that move only when called: called between send and receive, once the blocks that nobody waits for have
-been worked on; may be NULL.
+For transports that move only when called: called once between send and receive of a sum on nodes, after the first of
+up to eight groups of the blocks that nobody waits for; the others follow after receive. May be NULL.
 
 f(user): @cfunction(f, Cvoid, (Ptr{Cvoid},))
 """

@@ -8,7 +8,8 @@
  * that are said to be of a part. All parts return the same status; where it is a failure, the text on the
  * parts that are not at fault says which part is, and its sentence. Grids, materials, sets and steppers are
  * made and set up alike on all parts, by calls that do not wait for other parts: if one of these fails, the
- * host ends the problem on all. Calls that only read or write a part's own objects concern that part alone.
+ * host ends the problem on all. Calls that only read or write a part's own objects and are not listed below
+ * concern that part alone.
  * With a transport and one part every call behaves as without one, but for the linear solvers of implicit
  * steps, which are those of several parts (below).
  *
@@ -19,8 +20,8 @@
  * (collective) are: mpm_context_create(), save that memory may fail on one part alone; adding and filling
  * particles, where each part adds its own and numbers without ids follow those of the parts before;
  * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stepper_heat_info(),
- * mpm_stable_dt(), mpm_stepper_adapt(), mpm_stepper_set_balance(), mpm_state_hash(), mpm_state_size(),
- * mpm_state_save() in all its forms and mpm_state_load_pieces().
+ * mpm_stable_dt(), mpm_stepper_adapt(), mpm_stepper_set_balance(), mpm_particles_total(),
+ * mpm_state_hash(), mpm_state_size(), mpm_state_save() in all its forms and mpm_state_load_pieces().
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
  * added. An id is given once over all parts: mpm_particles_add() returns MPM_E_ARG where it is not.
  *
@@ -84,8 +85,8 @@ typedef mpm_status (*mpm_receive_fn)(void *user, int32_t *count, const mpm_messa
 /** values[count] of all parts into each of them (collective). Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_reduce_fn)(void *user, int32_t op, int64_t count, int64_t *values);
 
-/** all[parts]: value of each part (collective). Only when particles are added or sets adapt, and when
- * implicit steps number their unknowns. Returns as mpm_send_fn. */
+/** all[parts]: value of each part (collective). Only when particles are added, sets adapt, implicit steps
+ * number their unknowns or pieces of a state are loaded. Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_gather_fn)(void *user, int64_t value, int64_t *all);
 
 /** Ways between the parts. All are called on the calling thread. Once one has failed, every collective call
@@ -99,8 +100,9 @@ typedef struct mpm_transport {
   mpm_receive_fn receive; /**< ends what send started */
   mpm_reduce_fn reduce;   /**< maxima and sums of integers */
   mpm_gather_fn gather;   /**< one integer of each part */
-  /** For transports that move only when called: called between send and receive, once the blocks that nobody
-   * waits for have been worked on; may be NULL. */
+  /** For transports that move only when called: called once between send and receive of a sum on nodes, after
+   * the first of up to eight groups of the blocks that nobody waits for; the others follow after receive.
+   * May be NULL. */
   void (*poll)(void *user);
   void *user; /**< passed to all of them */
 } mpm_transport;
