@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/* What the library does where the host has set no limit: the imbalance at which a cut is looked for, and
- * how many of its steps it costs to move a particle: five on one thread, more where several make the steps. */
+/* What the library does where the host has set no limit: the imbalance at which a cut is looked for, and how
+ * many of its steps it costs to move a particle: five on one thread, more where several make the steps. */
 static const double usual_limit = 1.1, move_steps = 10.0;
 
 int32_t mpmi_cut_owner(const mpmi_parts *parts, uint64_t key) {
