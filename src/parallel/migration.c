@@ -52,7 +52,7 @@ static int32_t goes_to(const int32_t *owner, const mpm_particles *set, int64_t s
   return mpmi_i64(set, MPMI_ID, 0)[slot] < 0 ? -1 : owner[mpmi_sort_blocks_of_slots(set)[slot]];
 }
 
-/* Slots one after the other of particles that leave for the same part: a sort has put those of a block side by
+/* Slots one after the other of particles that leave for the same part: sorts put those of a block side by
  * side. */
 typedef struct leaving {
   int64_t slot, n;
