@@ -90,7 +90,7 @@ static mpm_status fill(const problem *p, const action *is) {
   return mpm_particles_fill_box(p->set, low, high, per_cell, NULL, NULL);
 }
 
-/* One part adds, by numbers of its own or those that follow. */
+/* One part adds, by numbers that follow or by some of its own, which may be in use on any part. */
 static mpm_status add(const problem *p, const action *is) {
   enum { MOST = 8 };
   double x[3 * MOST], v[3 * MOST], volume[MOST];
@@ -102,7 +102,7 @@ static mpm_status add(const problem *p, const action *is) {
       v[k * n + i] = share(is->d, -5.0, 5.0);
     }
     volume[i] = 1e-4;
-    ids[i] = 10000 * (1 + (is - p->of->list)) + i; /* each once, which several parts do not check */
+    ids[i] = 10000 * (1 + is->d % 4) + i;
   }
   return mpm_particles_add(p->set, n, x, v, volume, NULL, is->b & 8 ? ids : NULL, NULL);
 }
