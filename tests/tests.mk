@@ -3,7 +3,8 @@
 .PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
 .PHONY: check-builds check-windows check-wasm check-valgrind
 .PHONY: check-amalgamation check-cmake check-umat mutate-slack
-.PHONY: mutate mutate-check check-hashes update-hashes check-parts check-parts-quick check-parts-verify measure-parts
+.PHONY: mutate mutate-check check-hashes update-hashes check-parts check-parts-quick check-parts-faults check-parts-verify
+.PHONY: measure-parts
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-portable check-abi update-abi
 .PHONY: fuzz-programs fuzz fuzz-corpus check-fuzz verify verify-quick verify-plots
 
@@ -117,6 +118,15 @@ endif
 check-parts-quick: $(PARTS) $(PARTED_QUICK)
 	@bash tests/parts/run.sh $(PARTS) $(BUILD)/tests/parts/found $(JOBS) 4 3
 	@[ -z "$(PARTED_QUICK)" ] || bash tests/parts/cases.sh $(BUILD)/tests/parts/told $(JOBS) 3 $(PARTED_QUICK)
+
+# The suites have a sample of it in `check`; those that take longest start first.
+#: check-parts-faults    calls of the transport and allocations fail one by one, on each of three parts
+FAULT_SUITES := shared_contact shared shared_options shared_solvers shared_host_solver shared_states
+check-parts-faults: $(UNIT)
+	@mkdir -p $(FAULT_SUITES:%=$(BUILD)/tests/scratch/%)
+	@printf '%s\n' $(FAULT_SUITES) | $(TEST_ENVIRONMENT) xargs -P $(JOBS) -I{} sh -c \
+	  'out=$$(MPM_FULL=1 CK_INCLUDE_TAGS=faults CK_RUN_SUITE={} MPM_SCRATCH="$$MPM_SCRATCH/{}" $(UNIT) 2>&1); status=$$?; \
+   echo "$$out"; case $$out in *"Checks: 0,"*) status=1 ;; esac; exit $$status'
 
 #: check-portable        the same bits on every platform whose compiler and emulator are there: a table. SCENES=all, gate;
 #:                       PLATFORMS="gcc s390x"

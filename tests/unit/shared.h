@@ -64,8 +64,25 @@ mpm_status set_up_body(world *w, const scene *is);
 void live(int32_t part, const mpm_transport *transport, void *user);
 /* Plays the scene in several parts, each of which must come to its end. */
 void check_parts(scene *is, int32_t parts);
-/* Wherever the transport fails on one of three parts, every part returns and gives its memory back. The calls
- * that are tried lie closer together the larger `density` is; there must be more than `least`. */
+/* ---- faults ---- */
+/* Number `at` (from 1; 0: none) of what can fail on one of three parts, and how many have been tried. */
+enum { FAULTY = 3 };
+typedef struct planned {
+  int32_t part;
+  int64_t at, tried;
+} planned;
+/* Goes on to the next one of calls[FAULTY]; 0: that was the last. With MPM_FULL in the environment these are
+ * all on every part, but of hundreds, which iterations of a solver repeat, the first 300 and 150 of the others;
+ * else the parts take turns, and the faults lie closer together the larger `density` is. */
+int32_t next_fault(planned *f, int64_t density, const int64_t *calls);
+int32_t faults_are_full(void);
+/* Says how many there were, where they were all. */
+void tell_faults(const planned *f, const char *what);
+/* A case for tests of such faults: it has the tag "faults", and "wide" if it is. */
+TCase *faults_case(Suite *suite, const char *name, int32_t wide);
+
+/* Wherever the transport fails on one of three parts, every part returns and gives its memory back. More than
+ * `least` calls can fail. */
 void check_lost_transport(const scene *is, int64_t density, int64_t least);
 
 /* Wherever memory fails on one of three parts, a call fails on all, and goes through when it is made again.
@@ -73,14 +90,18 @@ void check_lost_transport(const scene *is, int64_t density, int64_t least);
 typedef struct hungry {
   scene is;
   int32_t loads;          /* with a surface */
-  int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
-  int32_t failed[3];      /* how many calls of each part */
-  host_memory memory[3];
+  planned fault;          /* the allocation that fails */
+  int64_t calls[FAULTY];  /* how many allocations each part has made */
+  int32_t failed[FAULTY]; /* how many calls of each part */
+  host_memory memory[FAULTY];
   /* For live_hungrily(): what the part does, as often as `acts` says; MPM_E_NOMEM leaves all as it was. */
   mpm_status (*act)(world *w, int32_t part, int32_t number);
   int32_t acts;
 } hungry;
 void check_hunger(const hungry *as, parts_fn lives);
+/* Around what memory may fail in: allocations count from `before`. */
+void begin_hunger(const hungry *h, world *w, int32_t part, int64_t before);
+void end_hunger(hungry *h, world *w, int32_t part, int64_t before);
 /* The life of a part: the scene is set up, and each act that memory runs out in is done once more. */
 void live_hungrily(int32_t part, const mpm_transport *transport, void *user);
 
@@ -157,7 +178,7 @@ void add_shared_adaption(Suite *suite);
 void add_shared_implicit(Suite *suite);
 void add_shared_steps(Suite *suite);
 void add_shared_touching(Suite *suite);
-TCase *shared_calls_case(void);
+TCase *shared_calls_case(Suite *suite); /* adds the faults */
 TCase *shared_balance_case(void);
 TCase *shared_timed_case(void);
 

@@ -231,7 +231,7 @@ void add_shared_adaption(Suite *suite) {
   tcase_add_loop_test(adaption, warm_sets_adapt, 0, 2);
   tcase_add_loop_test(adaption, implicit_steps_adapt, 0, 4);
   tcase_add_loop_test(adaption, adaption_fails_together, 0, 3);
-  tcase_add_test(adaption, memory_runs_out_adapting);
-  tcase_add_test(wide, transport_fails_adapting);
   suite_add_tcase(suite, adaption);
+  tcase_add_test(faults_case(suite, "faults of adaption", 0), memory_runs_out_adapting);
+  tcase_add_test(faults_case(suite, "more faults of adaption", 1), transport_fails_adapting);
 }

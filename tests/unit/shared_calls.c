@@ -209,12 +209,12 @@ START_TEST(memory_runs_out_adding) {
 }
 END_TEST
 
-TCase *shared_calls_case(void) {
+TCase *shared_calls_case(Suite *suite) {
   TCase *tests = tcase_create("calls");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, particles_are_packed, 0, 4);
   tcase_add_loop_test(tests, nodes_are_owned_once, 0, 8);
   tcase_add_test(tests, ids_are_given_once);
-  tcase_add_test(tests, memory_runs_out_adding);
+  tcase_add_test(faults_case(suite, "faults of calls", 0), memory_runs_out_adding);
   return tests;
 }

@@ -235,6 +235,6 @@ void add_shared_implicit(Suite *suite) {
   tcase_add_loop_test(failures, advances, 0, 3);
   tcase_add_test(failures, hosts_stop);
   tcase_add_loop_test(failures, refused, 0, 2);
-  tcase_add_test(failures, transport_fails);
   suite_add_tcase(suite, failures);
+  tcase_add_test(faults_case(suite, "faults of implicit", 0), transport_fails);
 }

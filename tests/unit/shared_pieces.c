@@ -1,10 +1,9 @@
 /* Pieces of a state that are no state, and calls that fail on one part: all parts refuse them alike, and have
  * what they had before, bit by bit. */
-#include "parts.h"
+#include "shared.h"
 #include "shared_states.h"
-#include "world.h"
 
-enum { PARTS = 3, TEXT = 400, MOST = 8 };
+enum { PARTS = FAULTY, TEXT = 400, MOST = 8 };
 
 typedef struct given {
   int32_t count;
@@ -249,13 +248,14 @@ END_TEST
 START_TEST(memory_runs_out) {
   attempt all = in_order();
   refused(&all, MPM_OK, "");
-  for (int32_t part = 0; part < PARTS; ++part)
-    for (int64_t at = 1; at <= all.calls[part]; at += 1 + at / 12) {
-      attempt a = in_order();
-      a.fail_at[part] = at;
-      refused(&a, MPM_E_NOMEM, "");
-    }
+  planned f = {0};
+  while (next_fault(&f, 36, all.calls)) {
+    attempt a = in_order();
+    a.fail_at[f.part] = f.at;
+    refused(&a, MPM_E_NOMEM, "");
+  }
   ck_assert_int_gt(all.calls[1], 40);
+  tell_faults(&f, "memory");
 }
 END_TEST
 
@@ -263,30 +263,33 @@ END_TEST
 START_TEST(transport_fails) {
   parts_plan plan;
   attempt all = in_order();
-  int64_t first = 0;
+  int64_t calls[PARTS], last = 0;
   memset(&plan, 0, sizeof plan);
   ck_assert_int_eq(parts_run(PARTS, try_them, &all, &plan), 0);
-  const int64_t calls = plan.calls[0];
-  for (int64_t at = calls; at > 0; at -= 7) {
+  memcpy(calls, plan.calls, sizeof calls);
+  planned f = {0};
+  while (next_fault(&f, 24, calls)) {
     attempt a = in_order();
     memset(&plan, 0, sizeof plan);
-    plan.fail_part = (int32_t)(at % PARTS);
+    plan.fail_part = f.part;
     plan.fail_kinds = PARTS_ANY;
-    plan.fail_at = at;
+    plan.fail_at = f.at;
     ck_assert_int_ne(parts_run(PARTS, try_them, &a, &plan), 0);
     for (int32_t r = 0; r < PARTS; ++r) {
-      ck_assert_msg(a.status[r] == MPM_OK || a.status[r] == MPM_E_CALLBACK, "call %lld, part %d: %s",
-                    (long long)at, r, mpm_status_name(a.status[r]));
+      ck_assert_msg(a.status[r] == MPM_OK || a.status[r] == MPM_E_CALLBACK,
+                    "call %lld of part %d, part %d: %s", (long long)f.at, (int)f.part, r,
+                    mpm_status_name(a.status[r]));
       ck_assert_int_ne(a.changed[r], 2);
     }
-    if (a.status[0]) first = at;
+    if (a.status[0] && last < f.at) last = f.at;
   }
-  ck_assert(first > 0 && first < calls);
+  ck_assert(last > 0 && last < calls[0]);
+  tell_faults(&f, "the transport");
 }
 END_TEST
 
 /* ---- a sort that fails --------------------------------------------------------------------------------- */
-/* Memory fails for part 1 in some step, while particles move to other parts; what is saved then goes on as if
+/* Memory fails for one part in some step, while particles move to other parts; what is saved then goes on as if
  * it had not. */
 static void fail_and_save(int32_t part, const mpm_transport *transport, void *user) {
   attempt *a = user;
@@ -309,18 +312,21 @@ START_TEST(saved_after_a_failed_sort) {
   uint64_t hash = 0;
   int64_t resorts = 0;
   attempt all = fresh_attempt();
-  for (int64_t at = 0; !at || at <= all.calls[1]; at += 1) {
+  planned f = {0};
+  do {
+    const long long at = f.at;
+    const int part = f.part;
     attempt a = fresh_attempt();
     parts_plan plan;
     memset(&plan, 0, sizeof plan);
-    a.fail_at[1] = at;
-    ck_assert_msg(!parts_run(PARTS, fail_and_save, &a, &plan), "allocation %lld: %s", (long long)at,
+    a.fail_at[part] = at;
+    ck_assert_msg(!parts_run(PARTS, fail_and_save, &a, &plan), "allocation %lld of part %d: %s", at, part,
                   plan.text);
     const void *piece[PARTS];
     int64_t bytes[PARTS];
     for (int32_t r = 0; r < PARTS; ++r) {
       ck_assert_msg(!a.changed[r] && a.status[r] == (at ? MPM_E_NOMEM : MPM_OK),
-                    "allocation %lld, part %d: %s, %d", (long long)at, r, mpm_status_name(a.status[r]),
+                    "allocation %lld of part %d, part %d: %s, %d", at, part, r, mpm_status_name(a.status[r]),
                     a.changed[r]);
       piece[r] = a.piece[r].data, bytes[r] = a.piece[r].bytes;
     }
@@ -332,12 +338,13 @@ START_TEST(saved_after_a_failed_sort) {
     while (info.step < 17) info = world_step(&w, 6e-4);
     if (!at) hash = world_hash(&w), resorts = info.resorts, all = a;
     ck_assert_msg(world_hash(&w) == hash && info.resorts == resorts,
-                  "allocation %lld: another state, %lld sorts, %lld", (long long)at, (long long)info.resorts,
-                  (long long)resorts);
+                  "allocation %lld of part %d: another state, %lld sorts, %lld", at, part,
+                  (long long)info.resorts, (long long)resorts);
     world_close(&w);
     for (int32_t r = 0; r < PARTS; ++r) free(a.piece[r].data);
-  }
+  } while (next_fault(&f, INT64_MAX, all.calls));
   ck_assert(all.calls[1] > 5 && resorts > 2);
+  tell_faults(&f, "memory");
 }
 END_TEST
 
@@ -485,17 +492,19 @@ START_TEST(saved_in_all_ways) {
 }
 END_TEST
 
-TCase *shared_pieces_case(void) {
+TCase *shared_pieces_case(Suite *suite) {
   TCase *pieces = tcase_create("pieces");
   tcase_set_timeout(pieces, 300);
   tcase_add_checked_fixture(pieces, make_pieces, drop_pieces);
   tcase_add_test(pieces, what_is_no_state);
   tcase_add_test(pieces, damaged_pieces);
   tcase_add_test(pieces, unlike_calls);
-  tcase_add_test(pieces, memory_runs_out);
-  tcase_add_test(pieces, transport_fails);
-  tcase_add_test(pieces, saved_after_a_failed_sort);
   tcase_add_test(pieces, one_part_is_told);
   tcase_add_test(pieces, saved_in_all_ways);
+  TCase *faults = faults_case(suite, "faults", 0);
+  tcase_add_checked_fixture(faults, make_pieces, drop_pieces);
+  tcase_add_test(faults, memory_runs_out);
+  tcase_add_test(faults, transport_fails);
+  tcase_add_test(faults, saved_after_a_failed_sort);
   return pieces;
 }

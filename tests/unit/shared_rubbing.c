@@ -95,6 +95,6 @@ void add_shared_rubbing(Suite *suite) {
   add_table(rubbing, wide, walls_combine, OPTIONS_SAMPLE);
   tcase_add_loop_test(rubbing, channels_are_narrow, 0, 6);
   tcase_add_loop_test(rubbing, walls_fail_together, 0, 6);
-  tcase_add_test(wide, transport_fails_at_walls);
   suite_add_tcase(suite, rubbing);
+  tcase_add_test(faults_case(suite, "faults of rubbing", 1), transport_fails_at_walls);
 }

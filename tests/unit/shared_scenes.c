@@ -175,47 +175,100 @@ void check_parts(scene *is, int32_t parts) {
     ck_assert_msg(is->found[r].status == MPM_OK, "part %d: %s", r, is->found[r].text);
 }
 
+int32_t faults_are_full(void) {
+  return getenv("MPM_FULL") != NULL;
+}
+
+static int32_t next_of_all(planned *f, const int64_t *calls) {
+  enum { EACH = 300, SPREAD = 150 };
+  const int64_t more = calls[f->part] - EACH;
+  f->at += f->at < EACH || more < SPREAD ? 1 : 1 + more / SPREAD;
+  while (f->part < FAULTY && f->at > calls[f->part]) ++f->part, f->at = 1;
+  return f->part < FAULTY;
+}
+
+static int32_t next_of_some(planned *f, int64_t density, const int64_t *calls) {
+  int64_t most = 0;
+  for (int32_t r = 0; r < FAULTY; ++r)
+    if (most < calls[r]) most = calls[r];
+  do {
+    f->at += 1 + f->at / density;
+    f->part = (int32_t)(f->at % FAULTY);
+  } while (f->at <= most && f->at > calls[f->part]);
+  return f->at <= most;
+}
+
+int32_t next_fault(planned *f, int64_t density, const int64_t *calls) {
+  const int32_t is_one = faults_are_full() ? next_of_all(f, calls) : next_of_some(f, density, calls);
+  f->tried += is_one;
+  return is_one;
+}
+
+void tell_faults(const planned *f, const char *what) {
+  if (faults_are_full()) fprintf(stderr, "%lld faults of %s\n", (long long)f->tried, what);
+}
+
 void check_lost_transport(const scene *is, int64_t density, int64_t least) {
   parts_plan plan;
-  int64_t calls = 0;
-  for (int64_t at = 0; !at || at <= calls; at += 1 + at / density) {
+  int64_t calls[FAULTY];
+  planned f = {0};
+  do {
     scene run = *is;
     memset(&plan, 0, sizeof plan);
-    plan.fail_part = (int32_t)(at % 3);
+    plan.fail_part = f.part;
     plan.fail_kinds = PARTS_ANY;
-    plan.fail_at = at;
-    const int done = parts_run(3, live, &run, &plan);
-    if (!at) calls = plan.calls[0];
-    ck_assert_msg(at ? done != 0 : done == 0, "call %lld of %lld: %s", (long long)at, (long long)calls,
+    plan.fail_at = f.at;
+    const int done = parts_run(FAULTY, live, &run, &plan);
+    if (!f.at) memcpy(calls, plan.calls, sizeof calls);
+    ck_assert_msg(f.at ? done != 0 : done == 0, "call %lld of part %d: %s", (long long)f.at, (int)f.part,
                   plan.text);
-    for (int32_t r = 0; r < 3; ++r)
-      ck_assert_msg(run.found[r].status == (at ? MPM_E_CALLBACK : MPM_OK), "call %lld, part %d: %s, %s",
-                    (long long)at, r, mpm_status_name(run.found[r].status), run.found[r].text);
-  }
-  ck_assert_int_gt(calls, least);
+    for (int32_t r = 0; r < FAULTY; ++r)
+      ck_assert_msg(run.found[r].status == (f.at ? MPM_E_CALLBACK : MPM_OK),
+                    "call %lld of part %d, part %d: %s, %s", (long long)f.at, (int)f.part, r,
+                    mpm_status_name(run.found[r].status), run.found[r].text);
+  } while (next_fault(&f, density, calls));
+  ck_assert_int_gt(calls[0], least);
+  tell_faults(&f, "the transport");
 }
 
 void check_hunger(const hungry *as, parts_fn lives) {
   static hungry h;
   parts_plan plan;
-  int64_t calls = 0;
+  int64_t calls[FAULTY];
   uint64_t hash = 0;
-  for (int64_t at = 0; !at || at <= calls; at += 1 + at / 12) {
+  planned f = {0};
+  do {
     h = *as;
     memset(&plan, 0, sizeof plan);
-    h.fail_at = at;
-    ck_assert_msg(!parts_run(3, lives, &h, &plan), "allocation %lld of %lld: %s", (long long)at,
-                  (long long)calls, plan.text);
-    if (!at) calls = h.calls, hash = h.is.found[0].hash;
-    for (int32_t r = 0; r < 3; ++r) {
-      ck_assert_int_eq(h.memory[r].held, 0);
-      ck_assert_msg(!h.is.found[r].status && h.failed[r] == (at != 0),
-                    "allocation %lld of %lld, part %d: %s, %d calls failed", (long long)at, (long long)calls,
-                    r, mpm_status_name(h.is.found[r].status), h.failed[r]);
-      ck_assert_msg(h.is.found[r].hash == hash, "allocation %lld, part %d: another state", (long long)at, r);
+    h.fault = f;
+    const long long at = f.at;
+    const int part = f.part;
+    ck_assert_msg(!parts_run(FAULTY, lives, &h, &plan), "allocation %lld of part %d: %s", at, part,
+                  plan.text);
+    if (!f.at) {
+      memcpy(calls, h.calls, sizeof calls);
+      hash = h.is.found[0].hash;
     }
-  }
-  ck_assert_int_gt(calls, 20);
+    for (int32_t r = 0; r < FAULTY; ++r) {
+      ck_assert_int_eq(h.memory[r].held, 0);
+      ck_assert_msg(!h.is.found[r].status && h.failed[r] == (f.at != 0),
+                    "allocation %lld of part %d, part %d: %s, %d calls failed", at, part, r,
+                    mpm_status_name(h.is.found[r].status), h.failed[r]);
+      ck_assert_msg(h.is.found[r].hash == hash, "allocation %lld of part %d, part %d: another state", at,
+                    part, r);
+    }
+  } while (next_fault(&f, 12, calls));
+  ck_assert_int_gt(calls[1], 20);
+  tell_faults(&f, "memory");
+}
+
+void begin_hunger(const hungry *h, world *w, int32_t part, int64_t before) {
+  if (part == h->fault.part && h->fault.at) w->memory.fail_at = before + h->fault.at;
+}
+
+void end_hunger(hungry *h, world *w, int32_t part, int64_t before) {
+  h->calls[part] = w->memory.calls - before;
+  w->memory.fail_at = 0;
 }
 
 mpm_status save_and_load(world *w) {
@@ -238,15 +291,14 @@ void live_hungrily(int32_t part, const mpm_transport *transport, void *user) {
   mpm_status status = world_try_open(&w);
   if (!status) status = h->is.set_up(&w, &h->is);
   const int64_t before = w.memory.calls;
-  if (part == 1 && h->fail_at) w.memory.fail_at = before + h->fail_at;
+  begin_hunger(h, &w, part, before);
   for (int32_t i = 0; i < h->acts && !status; ++i) {
     status = h->act(&w, part, i);
     if (status != MPM_E_NOMEM) continue;
     ++h->failed[part];
     status = h->act(&w, part, i);
   }
-  if (part == 1) h->calls = w.memory.calls - before;
-  w.memory.fail_at = 0;
+  end_hunger(h, &w, part, before);
   if (!status) status = mpm_state_hash(w.stepper, &h->is.found[part].hash);
   h->is.found[part].status = status;
   world_try_close(&w);
@@ -259,6 +311,14 @@ TCase *wide_case(Suite *suite, const char *name) {
   tcase_set_timeout(wide, 300);
   suite_add_tcase(suite, wide);
   return wide;
+}
+
+TCase *faults_case(Suite *suite, const char *name, int32_t wide) {
+  TCase *faults = tcase_create(name);
+  tcase_set_tags(faults, wide ? "wide faults" : "faults");
+  tcase_set_timeout(faults, faults_are_full() ? 3600 : 300);
+  suite_add_tcase(suite, faults);
+  return faults;
 }
 
 void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every) {

@@ -5,6 +5,6 @@
 #include <check.h>
 
 TCase *shared_states_case(Suite *suite);
-TCase *shared_pieces_case(void);
+TCase *shared_pieces_case(Suite *suite);
 
 #endif

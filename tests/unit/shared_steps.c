@@ -235,6 +235,6 @@ void add_shared_steps(Suite *suite) {
   add_table(all, wide, turned, 7);
   tcase_add_loop_test(all, loads_rigid, 0, 3);
   add_table(all, wide, loads_fail_together, 3);
-  tcase_add_test(wide, transport_fails);
   suite_add_tcase(suite, all);
+  tcase_add_test(faults_case(suite, "faults of steps", 1), transport_fails);
 }

@@ -287,8 +287,8 @@ Suite *shared_contact_suite(void) {
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 120);
   tcase_add_loop_test(failures, callbacks_fail, 0, 12);
-  tcase_add_test(failures, memory_runs_out_touching);
   suite_add_tcase(suite, failures);
+  tcase_add_test(faults_case(suite, "faults", 0), memory_runs_out_touching);
   add_shared_touching(suite);
   return suite;
 }

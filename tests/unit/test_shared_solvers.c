@@ -275,10 +275,10 @@ Suite *shared_solvers_suite(void) {
   tcase_set_timeout(failures, 240);
   add_table(failures, wide, steps_fail, 7);
   tcase_add_test(failures, symmetric_only);
-  tcase_add_test(failures, transport_fails);
   tcase_add_test(wide, long_body_loses_transport);
   add_table(failures, wide, executor_fails, 2);
   suite_add_tcase(suite, failures);
+  tcase_add_test(faults_case(suite, "faults", 0), transport_fails);
   add_shared_steps(suite);
   return suite;
 }

@@ -4,6 +4,6 @@
 Suite *shared_states_suite(void) {
   Suite *suite = suite_create("shared_states");
   suite_add_tcase(suite, shared_states_case(suite));
-  suite_add_tcase(suite, shared_pieces_case());
+  suite_add_tcase(suite, shared_pieces_case(suite));
   return suite;
 }
