@@ -1,6 +1,6 @@
 # The tests of libmpm, included by the Makefile at the top of the sources, from where all paths start.
 
-.PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
+.PHONY: check check-setup check-warnings check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
 .PHONY: check-builds check-windows check-wasm check-valgrind
 .PHONY: check-amalgamation check-cmake check-umat mutate-slack
 .PHONY: mutate mutate-check check-hashes update-hashes check-parts check-parts-quick check-parts-faults check-parts-verify
@@ -14,6 +14,7 @@
 # an installation does without pkg-config.
 UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c)))
 UNIT := $(BUILD)/tests/unit
+TEST_OPT ?= -O1
 CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
 CHECK_LIBS = $(shell $(PKG_CONFIG) --libs check)
 TEST_ENVIRONMENT = CC="$(CC)" CXX="$(CXX)" MAKE="$(MAKE)" PKG_CONFIG="$(PKG_CONFIG)" BUILD="$(abspath $(BUILD))" \
@@ -22,12 +23,16 @@ TEST_ENVIRONMENT = CC="$(CC)" CXX="$(CXX)" MAKE="$(MAKE)" PKG_CONFIG="$(PKG_CONF
 $(BUILD)/obj/tests/%.o: tests/%.c Makefile tests/tests.mk
 	@mkdir -p $(@D)
 	$(call SAY,CC)
-	$(Q)$(CC) $(COMMON) $(CHECK_CFLAGS) -O1 -c $< -o $@
+	$(Q)$(CC) $(COMMON) $(CHECK_CFLAGS) $(TEST_OPT) -c $< -o $@
 
 $(UNIT): $(UNIT_OBJECTS) $(STATIC_LIB)
 	@mkdir -p $(@D)
 	$(call SAY,LINK)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(UNIT_OBJECTS) $(STATIC_LIB) $(CHECK_LIBS) $(LIBS) -o $@
+
+#: check-warnings        the unit tests by a compiler that makes no code of them: what another one warns of
+check-warnings:
+	@printf '%s\n' $(sort $(wildcard tests/unit/*.c)) | xargs -P $(JOBS) -n 8 $(CC) -std=c11 -Iinclude -Isrc $(WARNINGS) $(CPPFLAGS) $(CHECK_CFLAGS) -fsyntax-only
 
 #: check                 what a change must pass: the checks of structure, units, hashes, interface, examples, faults, and
 #:                       verify-quick
@@ -197,7 +202,7 @@ check-setup:
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q check pkg-config g++ python3
 
 # Long runs of the method add nothing under a sanitizer but time, and all runs take longer.
-SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS="long clock wide" EXAMPLES_RUN="$(SANITIZED_EXAMPLES)" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
+SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS="long clock wide" EXAMPLES_RUN="$(SANITIZED_EXAMPLES)" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 TEST_OPT=-O0 NO_UNDEFINED= check-unit check-examples
 #: check-asan            check-unit and check-examples under the address and the undefined-behaviour sanitizer
 check-asan: SANITIZED_EXAMPLES = two_disks user_material host_threads staged_coupling cpp_block
 check-asan:
