@@ -204,11 +204,11 @@ check-setup:
 # Long runs of the method add nothing under a sanitizer but time, and all runs take longer.
 SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS="long clock wide" EXAMPLES_RUN="$(SANITIZED_EXAMPLES)" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 TEST_OPT=-O0 NO_UNDEFINED= check-unit check-examples
 #: check-asan            check-unit and check-examples under the address and the undefined-behaviour sanitizer
-check-asan: SANITIZED_EXAMPLES = two_disks user_material host_threads staged_coupling cpp_block
+check-asan: SANITIZED_EXAMPLES = user_material staged_coupling cpp_block
 check-asan:
 	+ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \
 	  BUILD=$(BUILD)-asan CPPFLAGS="$(CPPFLAGS) -DMPM_DEBUG" \
-	  CFLAGS="-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
+	  CFLAGS="-g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
 
 # For checks of what is the same with every instruction set: threads, and what files and descriptors say.
 ONE_SET = ISAS=baseline CPPFLAGS="$(CPPFLAGS) -DMPM_BASELINE_ONLY"
@@ -218,7 +218,7 @@ TSAN_SUITES ?= context executor threads parts rollback restart linalg
 check-tsan: SANITIZED_EXAMPLES = host_threads
 check-tsan:
 	+CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="$(TSAN_SUITES)" $(ONE_SET) \
-	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
+	  BUILD=$(BUILD)-tsan CFLAGS="-g1 -fno-omit-frame-pointer -fsanitize=thread"
 
 # Valgrind has no traps of the processor, knows nothing of slack, and takes twenty times as long.
 VALGRIND_SUITES ?= context fields host:callbacks host:reentry host:texts
@@ -235,7 +235,7 @@ check-valgrind: $(UNIT)
 FUZZ = $(BUILD)-fuzz
 FUZZ_TARGETS ?= state packed descriptors clouds meshes parts
 FUZZ_SECONDS ?= 600
-FUZZ_FLAGS = -g -fno-omit-frame-pointer -fno-sanitize-recover=all -fsanitize=address,undefined
+FUZZ_FLAGS = -g1 -fno-omit-frame-pointer -fno-sanitize-recover=all -fsanitize=address,undefined
 FUZZ_CC ?= clang
 #: fuzz-programs         the fuzz targets, by clang, in $(BUILD)-fuzz
 fuzz-programs:
