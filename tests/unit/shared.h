@@ -72,8 +72,8 @@ typedef struct planned {
   int64_t at, tried;
 } planned;
 /* Goes on to the next one of calls[FAULTY]; 0: that was the last. With MPM_FULL in the environment these are
- * all on every part, but of hundreds, which iterations of a solver repeat, the first 300 and 150 of the others;
- * else the parts take turns, and the faults lie closer together the larger `density` is. */
+ * all on every part, but of hundreds, which iterations of a solver repeat, the first 300 and 150 of the
+ * others; else the parts take turns, and the faults lie closer together the larger `density` is. */
 int32_t next_fault(planned *f, int64_t density, const int64_t *calls);
 int32_t faults_are_full(void);
 /* Says how many there were, where they were all. */

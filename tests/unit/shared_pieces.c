@@ -289,8 +289,8 @@ START_TEST(transport_fails) {
 END_TEST
 
 /* ---- a sort that fails --------------------------------------------------------------------------------- */
-/* Memory fails for one part in some step, while particles move to other parts; what is saved then goes on as if
- * it had not. */
+/* Memory fails for one part in some step, while particles move to other parts; what is saved then goes on as
+ * if it had not. */
 static void fail_and_save(int32_t part, const mpm_transport *transport, void *user) {
   attempt *a = user;
   world w;
