@@ -71,8 +71,8 @@ static void adopt(mpmi_parts *parts, const uint64_t *low) {
 }
 
 /* Whether the steps since the last cut would have gained more with the next one than the particles cost that
- * it moves. Whatever comes, no more than twice the time is lost that the best times for cuts would have
- * lost. The parts have the ranges of the next cut, `present` those of the last. */
+ * it moves: what has been lost stands for what would be. The parts have the ranges of the next cut, `present`
+ * those of the last. */
 static mpm_status pays(mpmi_parts *parts, const mpmi_blocks *blocks, const int64_t *weight,
                        const uint64_t *present, int64_t largest, int32_t *so) {
   const int32_t count = mpmi_part_count(parts);

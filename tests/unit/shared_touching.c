@@ -205,15 +205,20 @@ static mpm_status set_up_pair(world *w, const scene *is) {
   return status ? status : mpm_stepper_set_contact(w->stepper, 0, 1, &rule);
 }
 
-static mpm_status push_pair(world *w, const scene *is, outcome *found) {
+/* A plate at `from` pushes along an axis. */
+static mpm_status push_along(world *w, int32_t axis, double from, int32_t steps, outcome *found) {
   mpm_obstacle *plate = NULL;
   mpm_obstacle_desc d = shape_of(MPM_SHAPE_PLANE, MPM_MOTION_PRESCRIBED);
-  d.position[1] = 4.0 * is->desc.grid.spacing[1];
-  d.velocity[1] = 0.5;
+  d.position[axis] = from;
+  d.velocity[axis] = 0.5;
   mpm_status status = put_obstacle(w, &d, &plate);
-  for (int32_t i = 0; i < 3 && !status; ++i)
-    status = mpm_step(w->stepper, 0.2 * is->desc.grid.spacing[0], &w->info);
+  for (int32_t i = 0; i < steps && !status; ++i)
+    status = mpm_step(w->stepper, 0.2 * w->desc.grid.spacing[0], &w->info);
   return take_pushing(w, plate, status, found);
+}
+
+static mpm_status push_pair(world *w, const scene *is, outcome *found) {
+  return push_along(w, 1, 4.0 * is->desc.grid.spacing[1], 3, found);
 }
 
 START_TEST(bodies_meet_where_parts_do) {
@@ -270,14 +275,7 @@ static mpm_status set_up_bar(world *w, const scene *is) {
 }
 
 static mpm_status push(world *w, const scene *is, outcome *found) {
-  mpm_obstacle *plate = NULL;
-  mpm_obstacle_desc d = shape_of(MPM_SHAPE_PLANE, MPM_MOTION_PRESCRIBED);
-  d.position[0] = 0.1 - 0.25 * is->desc.grid.spacing[0];
-  d.velocity[0] = 0.5;
-  mpm_status status = put_obstacle(w, &d, &plate);
-  for (int32_t i = 0; i < 6 && !status; ++i)
-    status = mpm_step(w->stepper, 0.2 * is->desc.grid.spacing[0], &w->info);
-  return take_pushing(w, plate, status, found);
+  return push_along(w, 0, 0.1 - 0.25 * is->desc.grid.spacing[0], 6, found);
 }
 
 START_TEST(bar_is_pushed) {
