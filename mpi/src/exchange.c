@@ -256,6 +256,17 @@ mpm_status mpmx_receive(void *user, int32_t *count, const mpm_message **in) {
   return MPM_OK;
 }
 
+/* A wait that gives the processor to others: MPI itself may keep it, and where there are more processes than
+ * processors a reduction would take as long as the system lets one of them run. */
+static mpm_status wait_for(mpm_mpi *m, int code, MPI_Request *pending, const char *call) {
+  mpm_status status = check(m, code, call);
+  for (int done = 0; !status && !done;) {
+    status = check(m, MPI_Test(pending, &done, MPI_STATUS_IGNORE), call);
+    if (!done) sched_yield();
+  }
+  return status;
+}
+
 mpm_status mpmx_reduce(void *user, int32_t op, int64_t count, int64_t *values) {
   mpm_mpi *m = user;
   if (m->failed) return m->failed;
@@ -266,11 +277,11 @@ mpm_status mpmx_reduce(void *user, int32_t op, int64_t count, int64_t *values) {
   /* sums without a sign go round modulo 2^64 */
   for (int64_t done = 0, n; done < count; done += n) {
     n = count - done < MPMX_PIECE ? count - done : MPMX_PIECE;
-    const mpm_status status = check(m,
-                                    MPI_Allreduce(MPI_IN_PLACE, values + done, (int)n,
-                                                  op == MPM_REDUCE_SUM ? MPI_UINT64_T : MPI_INT64_T,
-                                                  op == MPM_REDUCE_SUM ? MPI_SUM : MPI_MAX, m->comm),
-                                    "MPI_Allreduce");
+    MPI_Request pending = MPI_REQUEST_NULL;
+    const int code =
+        MPI_Iallreduce(MPI_IN_PLACE, values + done, (int)n, op == MPM_REDUCE_SUM ? MPI_UINT64_T : MPI_INT64_T,
+                       op == MPM_REDUCE_SUM ? MPI_SUM : MPI_MAX, m->comm, &pending);
+    const mpm_status status = wait_for(m, code, &pending, "MPI_Iallreduce");
     if (status) return status;
   }
   return MPM_OK;
@@ -281,7 +292,9 @@ mpm_status mpmx_gather(void *user, int64_t value, int64_t *all) {
   if (m->failed) return m->failed;
   if (m->exchange.kind) return mpmx_fail(m, MPM_E_STATE, "gather: the last exchange has not been received");
   if (!all) return mpmx_fail(m, MPM_E_ARG, "gather: all is NULL");
-  return check(m, MPI_Allgather(&value, 1, MPI_INT64_T, all, 1, MPI_INT64_T, m->comm), "MPI_Allgather");
+  MPI_Request pending = MPI_REQUEST_NULL;
+  const int code = MPI_Iallgather(&value, 1, MPI_INT64_T, all, 1, MPI_INT64_T, m->comm, &pending);
+  return wait_for(m, code, &pending, "MPI_Iallgather");
 }
 
 /* Receives can be called off. What is being sent belongs to the library and is left to MPI. */

@@ -48,6 +48,12 @@ FAULTY(F_COMM_SPLIT, Comm_split, (MPI_Comm c, int colour, int key, MPI_Comm *d),
 FAULTY(F_BCAST, Bcast, (void *b, int n, MPI_Datatype t, int root, MPI_Comm c), (b, n, t, root, c))
 FAULTY(F_ALLREDUCE, Allreduce, (const void *s, void *r, int n, MPI_Datatype t, MPI_Op o, MPI_Comm c),
        (s, r, n, t, o, c))
+FAULTY(F_ALLREDUCE, Iallreduce,
+       (const void *s, void *r, int n, MPI_Datatype t, MPI_Op o, MPI_Comm c, MPI_Request *q),
+       (s, r, n, t, o, c, q))
+FAULTY(F_ALLGATHER, Iallgather,
+       (const void *s, int n, MPI_Datatype t, void *r, int rn, MPI_Datatype rt, MPI_Comm c, MPI_Request *q),
+       (s, n, t, r, rn, rt, c, q))
 FAULTY(F_ALLGATHER, Allgather,
        (const void *s, int n, MPI_Datatype t, void *r, int rn, MPI_Datatype rt, MPI_Comm c),
        (s, n, t, r, rn, rt, c))

@@ -74,12 +74,9 @@ result_of() { # what: the hash that the last run has printed
 # bits of one that does not stop, on one thread and without a transport: for implicit steps, too, whose solver has a name there.
 restart() { # folder
   scheme=explicit restart_of "$1" 30 17 # more than one sort
-  # in small pieces the many exchanges of a solver would take minutes, and say nothing that those of files do not
-  [ "$1" = pieces ] || scheme=implicit restart_of "$1" 12 8
+  scheme=implicit restart_of "$1" 12 8
 }
 restart_of() { # folder, steps, the step in which a process is killed
-  local fails=fails
-  [ "$1" != pieces ] || fails=
   local states="$scratch/$package-$1/states $scheme" at=$scratch/$package-$1/states-out wanted result status=0 from=- n last
   rm -rf "$at"
   mkdir -p "$at"
@@ -89,7 +86,7 @@ restart_of() { # folder, steps, the step in which a process is killed
     wanted=$(result_of "$1: without a transport, $scheme")
     for n in 4 3 1; do
       case $n in 4) last=5 ;; 3) last=10 ;; 1) last=$2 ;; esac
-      must "$1: restart, $scheme" $n $states "$at/run.state" "$from" $last $fails
+      must "$1: restart, $scheme" $n $states "$at/run.state" "$from" $last fails
       result=$(result_of "$1: restart, $scheme")
       from=$at/run.state
     done

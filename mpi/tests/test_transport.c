@@ -253,8 +253,8 @@ static void test_faults(void) {
                 {F_ISSEND, MPM_EXCHANGE_SPARSE, 1, "MPI_Isend: "},
                 {F_IPROBE, MPM_EXCHANGE_SPARSE, 0, "MPI_Iprobe: "},
                 {F_IBARRIER, MPM_EXCHANGE_SPARSE, 0, "MPI_Ibarrier: "},
-                {F_ALLREDUCE, MPM_EXCHANGE_KNOWN, 0, "MPI_Allreduce: "},
-                {F_ALLGATHER, MPM_EXCHANGE_KNOWN, 0, "MPI_Allgather: "}};
+                {F_ALLREDUCE, MPM_EXCHANGE_KNOWN, 0, "MPI_Iallreduce: "},
+                {F_ALLGATHER, MPM_EXCHANGE_KNOWN, 0, "MPI_Iallgather: "}};
   services s;
   mpm_context_desc desc;
   describe(&desc, &s);
