@@ -8,22 +8,23 @@ move and now and then blocks are given to parts anew."""
 import math
 
 # Measured. Of the part that sends most, the mean of a fresh and a loose sort (make measure-parts, and SIDE=3 CELLS=48):
-# particles per part: bytes that it sends in a step, share of its blocks that nobody waits for.
-SENT = {110592: (3.92e6, 0.14), 884736: (12.4e6, 0.41)}
+# particles per part: bytes that it sends in a step, share of its blocks that nobody waits for, and of these the share
+# of those that give early, before messages have come (src/parallel/early.c; counted there in the same runs).
+SENT = {110592: (3.92e6, 0.14, 0.095), 884736: (12.4e6, 0.41, 0.29)}
 NEIGHBOURS = 22
 REDUCTIONS = 8  # in a step, counted by the transport
 PARTICLE = 70e-9  # seconds per particle and step on one core: 3-D quadratic FLIP on a Zen 4 at 3.65 GHz
-PACKING = 0.19e-9  # seconds per byte, by one thread: dam_break_mpi 48 2 on two processes of two cores
+PACKING = 0.19e-9  # seconds per byte on one core: dam_break_mpi 48 2 on two processes of two cores
 ADDING = 0.83e-9  # seconds per byte that has come, by clocks around it in the same run
-MOVING = 1.5e-9  # seconds per byte of a particle that moves, packed and unpacked by one thread: dam_break_mpi 36 20, likewise
+MOVING = 1.5e-9  # seconds per byte of a particle that moves, packed and unpacked on one core: dam_break_mpi 36 20, likewise
 SCANNING = 8e-9  # seconds per particle, by one thread, to find those that move
 SORT_REDUCTIONS = 10  # in a sort with its two sparse exchanges, counted in the sources
 CUT_REDUCTIONS = 63  # in a cut, at most: one for each bit of a key
 
 # Assumed: nothing of this has been measured.
-THREADS = 0.75  # what 16 threads of a part lose to each other: 12 times the rate of one
+THREADS = 0.75  # what 16 threads of a part lose to each other: 12 times the rate of one, in copying as in steps
 STAYS = 0.4  # share of the bytes that goes to processes of the same machine, where it has several
-HIDES = 0.05  # share of the work that is done before anybody waits, of blocks that nobody waits for: the sums of one colour
+HIDES = 0.4  # share of a block's work that its sums are
 CUTS = 0.1  # cuts per sort
 MIGRATES = 0.06 * 400.0  # bytes per particle in a sort
 SORT = 0.4  # of a step's work
@@ -49,13 +50,14 @@ def step(n, parts, network):
         return work + sort
     beside = cores // CORES
     leaves = 1.0 if beside == 1 else 1.0 - STAYS
-    sent, inner = between(n, 0), min(0.9, between(n, 1))
+    sent, early = between(n, 0), min(0.9, between(n, 1)) * min(1.0, between(n, 2))
     exchange = NEIGHBOURS * latency + leaves * sent * beside / bandwidth
     reduce = REDUCTIONS * 2.0 * latency * math.ceil(math.log2(parts))
     moves = MIGRATES * n
     together = (SORT_REDUCTIONS + CUTS * CUT_REDUCTIONS) * 2.0 * latency * math.ceil(math.log2(parts))
-    sort += (SCANNING * n + MOVING * moves + moves * beside * leaves / bandwidth + 2 * NEIGHBOURS * latency + together) / 30.0
-    return work + (PACKING + ADDING / (CORES * THREADS)) * sent + max(0.0, exchange - HIDES * inner * work) + reduce + sort
+    sort += (SCANNING * n + MOVING * moves / (CORES * THREADS) + moves * beside * leaves / bandwidth + 2 * NEIGHBOURS * latency + together) / 30.0
+    copying = (PACKING + ADDING) / (CORES * THREADS) * sent
+    return work + copying + max(0.0, exchange - HIDES * early * work) + reduce + sort
 
 
 def table(cases):

@@ -213,7 +213,7 @@ check-asan:
 # For checks of what is the same with every instruction set: threads, and what files and descriptors say.
 ONE_SET = ISAS=baseline CPPFLAGS="$(CPPFLAGS) -DMPM_BASELINE_ONLY"
 # The fork of each test would hide threads from the sanitizer.
-TSAN_SUITES ?= context executor threads parts rollback restart linalg
+TSAN_SUITES ?= context executor threads parts rollback restart linalg shared:threads
 #: check-tsan            the suites with threads under the thread sanitizer
 check-tsan: SANITIZED_EXAMPLES = host_threads
 check-tsan:

@@ -16,6 +16,14 @@
 #define MPMI_BLOCK_EDGE(dim) ((dim) == 1 ? 64 : (dim) == 2 ? 16 : 6)
 enum { MPMI_RING = 1 };
 
+/* Blocks of one colour have the same parity of coordinates on each axis: their tiles do not overlap. */
+enum { MPMI_COLOURS = 8 };
+static inline int32_t mpmi_colour_of(int32_t dim, const int32_t *coord) {
+  int32_t colour = 0;
+  for (int32_t k = 0; k < dim; ++k) colour = 2 * colour + (coord[k] & 1);
+  return colour;
+}
+
 enum { MPMI_MAX_NEIGHBOURS = 27, MPMI_NO_BLOCK = -1, MPMI_MAX_BODIES = 4096 };
 
 /* A box of nodes in a block or in a tile: low <= place < high, by axis; empty where low >= high. */

@@ -106,9 +106,9 @@ static mpm_status own_failure(mpmi_step *step, mpmi_parts *parts, mpm_status sta
   return own ? own : status;
 }
 
-/* Tiles of boundary blocks are made first and sent; what they give is added to the nodes with that of all
- * other blocks of their colour, as if there had been one part. All blocks give, also where something has
- * failed: one part would know of all particles that do. */
+/* Tiles of boundary blocks are made first and sent. While they are under way early blocks give, and then
+ * those that are left, each colour with what is shared of it, so that every node has the sum of one part. All
+ * blocks give, also where something has failed: one part would know of all particles that do. */
 static mpm_status add_with_others(sum_job *job, mpm_status given) {
   const mpmi_accumulation *sum = job->sum;
   mpmi_parts *parts = job->step->layout->parts;
@@ -116,12 +116,13 @@ static mpm_status add_with_others(sum_job *job, mpm_status given) {
   if (!given) given = mpmi_visit_marked(job->step, parts->is_boundary, sum->calls_host, give_boundary, job);
   mpm_status status = given ? given : mpmi_step_failure(job->step);
   status = mpmi_tiles_send(parts, values, job->step->layout->blocks.cover, status);
-  if (!given) given = mpmi_visit_colour(job->step, parts->is_inner, 0, sum->calls_host, add_block, job);
-  mpmi_poll(job->step->settings->context);
+  for (int32_t c = 0; c < MPMI_COLOURS && !given; ++c) {
+    given = mpmi_visit_colour(job->step, parts->is_early, c, sum->calls_host, add_block, job);
+    mpmi_poll(job->step->settings->context);
+  }
   status = mpmi_tiles_receive(parts, values, status ? status : given);
   for (int32_t c = 0; c < MPMI_COLOURS; ++c) {
-    if (c && !given)
-      given = mpmi_visit_colour(job->step, parts->is_inner, c, sum->calls_host, add_block, job);
+    if (!given) given = mpmi_visit_colour(job->step, parts->is_late, c, sum->calls_host, add_block, job);
     if (!status) status = given;
     if (!status) status = add_colour(job, c);
   }

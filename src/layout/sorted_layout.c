@@ -92,12 +92,6 @@ static int64_t slots_in_block(const mpmi_layout *layout, int64_t block) {
   return slots;
 }
 
-int32_t mpmi_colour_of(int32_t dim, const int32_t *coord) {
-  int32_t colour = 0;
-  for (int32_t k = 0; k < dim; ++k) colour = 2 * colour + (coord[k] & 1);
-  return colour;
-}
-
 /* Cuts a list into contiguous ranges of about equal numbers of slots; results do not depend on where they
  * end. */
 static void set_bounds(const mpmi_layout *layout, int32_t tasks, mpmi_worklist *list) {

@@ -26,12 +26,8 @@ typedef struct mpmi_worklist {
   int64_t *bound; /* [tasks + 1] */
 } mpmi_worklist;
 
-/* Blocks of one colour have the same parity of coordinates on each axis: their tiles do not overlap. There is
- * one list of all blocks with particles, and then one for each colour. */
-enum { MPMI_COLOURS = 8, MPMI_WORKLISTS = 1 + MPMI_COLOURS };
-
-/* Returns the colour of a block. */
-int32_t mpmi_colour_of(int32_t dim, const int32_t *coord);
+/* There is one list of all blocks with particles, and then one for each colour. */
+enum { MPMI_WORKLISTS = 1 + MPMI_COLOURS };
 
 /* A node that has this share of the mass of one beside it, or less, goes with it (boundary/light_nodes.c). */
 #define MPMI_LIGHT_SHARE 1e-5

@@ -58,15 +58,43 @@ typedef struct leaving {
   int64_t slot, n;
 } leaving;
 
-static void pack_field(const mpm_particles *set, const mpmi_field *field, int64_t n, const leaving *run,
-                       const leaving *end, char *to) {
-  const size_t size = mpmi_type_size(field->type);
-  for (int32_t c = 0; c < field->components; ++c) {
-    const char *from = (const char *)field->data[0] + (size_t)(c * set->ld) * size;
-    char *at = to + c * padded_bytes(field, n);
-    for (const leaving *i = run; i < end; at += (size_t)i++->n * size)
-      memcpy(at, from + (size_t)i->slot * size, (size_t)i->n * size);
+/* The columns of a piece of a message: n particles of a set, component after component of its fields. */
+typedef struct piece {
+  const mpm_particles *set;
+  int64_t n, slot; /* slot: where those that have come go */
+  const leaving *run, *end;
+  char *to; /* of what leaves */
+  const char *from;
+  int64_t tasks;
+} piece;
+/* Copies n values of a column, which lie `offset` behind the beginning of the piece. */
+typedef void (*column_fn)(const piece *p, char *column, size_t size, int64_t offset);
+
+/* Goes through task k's share of them. */
+static void each_column(const piece *p, int64_t k, column_fn fn) {
+  int64_t columns = 0, column = 0, offset = 0;
+  for (int32_t f = 0; f < p->set->field_count; ++f)
+    if (p->set->field[f].present) columns += p->set->field[f].components;
+  const int64_t begin = columns * k / p->tasks, end = columns * (k + 1) / p->tasks;
+  for (int32_t f = 0; f < p->set->field_count; ++f) {
+    const mpmi_field *field = &p->set->field[f];
+    const size_t size = mpmi_type_size(field->type);
+    for (int32_t c = 0; field->present && c < field->components; ++c, ++column) {
+      char *at = (char *)field->data[0] + (size_t)(c * p->set->ld) * size;
+      if (column >= begin && column < end) fn(p, at, size, offset);
+      offset += padded_bytes(field, p->n);
+    }
   }
+}
+
+static void pack_column(const piece *p, char *column, size_t size, int64_t offset) {
+  char *at = p->to + offset;
+  for (const leaving *i = p->run; i < p->end; at += (size_t)i++->n * size)
+    memcpy(at, column + (size_t)i->slot * size, (size_t)i->n * size);
+}
+
+static void pack_task(void *data, int64_t k) {
+  each_column(data, k, pack_column);
 }
 
 /* Adds particles of set number m to the message of a part. */
@@ -78,13 +106,9 @@ static mpm_status pack_set(mpmi_parts *parts, int32_t to, int32_t m, const mpm_p
   char *at = mpmi_buffer_take(parts->context, &parts->out[to], (int64_t)sizeof head + bytes_of(set, n));
   if (!at) return MPM_E_NOMEM;
   memcpy(at, head, sizeof head);
-  at += sizeof head;
-  for (int32_t f = 0; f < set->field_count; ++f) {
-    if (!set->field[f].present) continue;
-    pack_field(set, &set->field[f], n, run, end, at);
-    at += set->field[f].components * padded_bytes(&set->field[f], n);
-  }
-  return MPM_OK;
+  piece p = {.set = set, .n = n, .run = run, .end = end, .to = at + sizeof head};
+  p.tasks = mpmi_copy_tasks(parts->context, bytes_of(set, n));
+  return mpmi_parallel_for(parts->context, p.tasks, pack_task, &p);
 }
 
 /* Lists what leaves, part by part: end[r] is behind what goes to part r. The list is kept, because the memory
@@ -170,17 +194,21 @@ static void count_piece(mpmi_moving_set *to, int32_t low, int64_t n, const char 
   if (low) to->arrive_low += n;
 }
 
+static void take_column(const piece *p, char *column, size_t size, int64_t offset) {
+  memcpy(column + (size_t)p->slot * size, p->from + offset, (size_t)p->n * size);
+}
+
+static void take_task(void *data, int64_t k) {
+  each_column(data, k, take_column);
+}
+
 /* Where the next piece of each set goes is kept in its sorting. */
 static void take_piece(mpmi_moving_set *to, int32_t low, int64_t n, const char *values) {
-  const mpm_particles *set = to->set;
-  const int64_t slot = to->sorting->tail + to->sorting->tail_count;
+  mpm_context *c = to->set->context;
+  piece p = {.set = to->set, .n = n, .slot = to->sorting->tail + to->sorting->tail_count, .from = values};
+  p.tasks = mpmi_copy_tasks(c, bytes_of(to->set, n));
   (void)low;
-  for (int32_t f = 0; f < set->field_count; ++f) {
-    const mpmi_field *field = &set->field[f];
-    const size_t size = mpmi_type_size(field->type);
-    for (int32_t c = 0; field->present && c < field->components; ++c, values += padded_bytes(field, n))
-      memcpy((char *)field->data[0] + (size_t)(c * set->ld + slot) * size, values, (size_t)n * size);
-  }
+  mpmi_parallel_for_sure(c, p.tasks, take_task, &p);
   to->sorting->tail_count += n;
 }
 

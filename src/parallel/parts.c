@@ -44,6 +44,8 @@ void mpmi_parts_destroy(mpmi_parts *parts) {
   MPMI_FREE_ARRAY(c, parts->mark, parts->mark_capacity);
   MPMI_FREE_ARRAY(c, parts->is_boundary, parts->is_boundary_capacity);
   MPMI_FREE_ARRAY(c, parts->is_inner, parts->is_inner_capacity);
+  MPMI_FREE_ARRAY(c, parts->is_early, parts->is_early_capacity);
+  MPMI_FREE_ARRAY(c, parts->is_late, parts->is_late_capacity);
   MPMI_FREE_ARRAY(c, parts->near, parts->near_capacity);
   MPMI_FREE_ARRAY(c, parts->boundary, parts->boundary_capacity);
   MPMI_FREE_ARRAY(c, parts->tile, parts->tile_capacity);

@@ -4,7 +4,8 @@
  *   migration.c  particles that go to another part, when they are sorted
  *   pattern.c    which blocks of other parts share nodes with one's own, and which of the nodes have all that
  *                particles give them
- *   tiles.c      the exchange of what the particles of such blocks give
+ *   early.c      which blocks give to nodes while messages are under way
+ *   tiles.c      the exchange of what the particles of blocks at the boundary give
  *   accord.c     what parts settle together in the conditions on nodes
  *   guests.c     copies of particles of other parts, around nodes at which bodies meet
  *
@@ -29,6 +30,7 @@ typedef struct mpmi_shared_block {
   int32_t partner; /* index in the list of partners */
   mpmi_node_box box;
   const double *values; /* of the ghost, in a message; NULL: there were none */
+  double *place;        /* in a message, of what is sent; NULL: there is none */
 } mpmi_shared_block;
 
 /* A part that shares nodes with this one. */
@@ -79,10 +81,12 @@ typedef struct mpmi_parts {
   int64_t partial_count, partial_capacity;
   int64_t version; /* of the layout that the flags are of */
   /* By block: 1 + its index in `boundary`, or 0; whether it is on the boundary; whether it has particles
-   * and is not; whether it has particles, 2 where it may share nodes with a ghost. */
+   * and is not, and then which of both it is, early or late; whether it has particles, 2 where it may share
+   * nodes with a ghost. */
   int32_t *mark;
-  uint8_t *is_boundary, *is_inner, *near;
-  int64_t mark_capacity, is_boundary_capacity, is_inner_capacity, near_capacity;
+  uint8_t *is_boundary, *is_inner, *is_early, *is_late, *near;
+  int64_t mark_capacity, is_boundary_capacity, is_inner_capacity, is_early_capacity, is_late_capacity;
+  int64_t near_capacity;
   int64_t boundary_count, boundary_capacity, *boundary; /* own blocks that are sent, each once */
   double *tile;                                         /* [boundary] their tiles */
   int64_t tile_capacity;
@@ -136,6 +140,13 @@ void mpmi_time_reset(mpmi_parts *parts);
 /* Makes room for more bytes of a message, and returns where they go, or NULL. */
 void *mpmi_buffer_take(mpm_context *context, mpmi_buffer *buffer, int64_t bytes);
 
+/* Returns how many threads so many bytes are worth that are copied: to wake one takes as long as to copy
+ * 64 KB. */
+static inline int64_t mpmi_copy_tasks(const mpm_context *context, int64_t bytes) {
+  const int64_t tasks = 1 + bytes / 65536;
+  return tasks < context->concurrency ? tasks : context->concurrency;
+}
+
 /* Nothing is to be sent to any part. */
 static inline void mpmi_messages_clear(const mpmi_parts *parts) {
   for (int32_t r = 0; r < mpmi_part_count(parts); ++r) parts->out[r].used = 0;
@@ -187,6 +198,12 @@ static inline int32_t mpmi_owner_of_node(const mpmi_parts *parts, int64_t slot) 
 static inline int32_t mpmi_meets_node(const mpmi_parts *parts, int64_t slot) {
   return !parts || (parts->flags[slot] & (MPMI_NODE_GIVEN | MPMI_NODE_OWN)) != MPMI_NODE_GIVEN;
 }
+
+/* ---- early.c ----------------------------------------------------------------------------------------- */
+/* Tells inner blocks apart, once all are in order and it is known which are inner. Before messages have come
+ * early ones can be added, colour by colour, and after that the others with what has come: each node still
+ * takes its tiles in the order of their colours. */
+mpm_status mpmi_find_early(mpmi_parts *parts, const mpmi_blocks *blocks);
 
 /* ---- accord.c ---------------------------------------------------------------------------------------- */
 /* What parts tell each other in one: first, whether one of them has failed. */

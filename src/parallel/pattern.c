@@ -106,32 +106,40 @@ static int32_t all_wanted(const place *const *at) {
 }
 
 /* ---- who is near --------------------------------------------------------------------------------------- */
-/* Marks the parts that have a place near a block. */
-static void mark_owner(nearby *n, const int32_t *coord, const place *const *at) {
-  if (!all_want(at) && !all_wanted(at)) return;
-  n->parts->owner_count[mpmi_cut_owner(n->parts, mpmi_block_key(n->parts->grid, coord))] = 1;
-}
-
 /* What parts tell each other of their blocks. */
 typedef struct told_block {
   int32_t coord[3], body;
 } told_block;
 
+typedef struct telling {
+  told_block block;
+  int64_t number; /* of the block, from 1: the last that a part was told is its owner_count */
+  mpm_status status;
+} telling;
+
+/* Tells a block to the part that has a place near it, once. */
+static void tell_owner(nearby *n, const int32_t *coord, const place *const *at) {
+  telling *t = n->user;
+  if (t->status || (!all_want(at) && !all_wanted(at))) return;
+  mpm_context *c = n->parts->context;
+  const int32_t owner = mpmi_cut_owner(n->parts, mpmi_block_key(n->parts->grid, coord));
+  if (owner == c->transport.part || n->parts->owner_count[owner] == t->number) return;
+  n->parts->owner_count[owner] = t->number;
+  void *to = mpmi_buffer_take(c, &n->parts->out[owner], sizeof t->block);
+  if (to) memcpy(to, &t->block, sizeof t->block);
+  t->status = to ? MPM_OK : MPM_E_NOMEM;
+}
+
 static mpm_status tell(mpmi_parts *parts, const mpmi_blocks *blocks) {
-  const int32_t all = mpmi_part_count(parts), me = parts->context->transport.part;
-  for (int64_t i = 0; i < blocks->count; ++i) {
-    nearby n = {parts, blocks, {blocks->coord[i][0], blocks->coord[i][1], blocks->coord[i][2]}, NULL};
-    const told_block block = {{n.coord[0], n.coord[1], n.coord[2]}, blocks->body[i]};
-    memset(parts->owner_count, 0, (size_t)all * sizeof *parts->owner_count);
-    each_near(&n, mark_owner);
-    for (int32_t r = 0; r < all; ++r) {
-      if (r == me || !parts->owner_count[r]) continue;
-      void *at = mpmi_buffer_take(parts->context, &parts->out[r], sizeof block);
-      if (!at) return MPM_E_NOMEM;
-      memcpy(at, &block, sizeof block);
-    }
+  telling t = {.number = 1};
+  memset(parts->owner_count, 0, (size_t)mpmi_part_count(parts) * sizeof *parts->owner_count);
+  for (; t.number <= blocks->count && !t.status; ++t.number) {
+    const int64_t i = t.number - 1;
+    nearby n = {parts, blocks, {blocks->coord[i][0], blocks->coord[i][1], blocks->coord[i][2]}, &t};
+    t.block = (told_block){{n.coord[0], n.coord[1], n.coord[2]}, blocks->body[i]};
+    each_near(&n, tell_owner);
   }
-  return MPM_OK;
+  return t.status;
 }
 
 /* ---- what is sent and what comes ----------------------------------------------------------------------- */
@@ -189,7 +197,7 @@ static mpm_status insert_ghosts(mpmi_parts *parts, mpmi_blocks *blocks, int64_t 
     if (!status && s.wants)
       status = MPMI_RESERVE_NEXT(parts->context, parts->ghost, parts->ghost_capacity, parts->ghost_count);
     if (status) return status;
-    if (s.wants) parts->ghost[parts->ghost_count++] = (mpmi_shared_block){block, partner, s.box, NULL};
+    if (s.wants) parts->ghost[parts->ghost_count++] = (mpmi_shared_block){block, partner, s.box, NULL, NULL};
   }
   return MPM_OK;
 }
@@ -205,8 +213,8 @@ static mpm_status list_sent(mpmi_parts *parts, const mpmi_blocks *blocks, int32_
     const mpm_status status =
         MPMI_RESERVE_NEXT(parts->context, parts->sent, parts->sent_capacity, parts->sent_count);
     if (status) return status;
-    parts->sent[parts->sent_count++] =
-        (mpmi_shared_block){mpmi_blocks_find(blocks, told[i].body, told[i].coord), partner, s.box, NULL};
+    parts->sent[parts->sent_count++] = (mpmi_shared_block){
+        mpmi_blocks_find(blocks, told[i].body, told[i].coord), partner, s.box, NULL, NULL};
   }
   return MPM_OK;
 }
@@ -367,7 +375,7 @@ mpm_status mpmi_pattern_adopt(mpmi_parts *parts, const mpmi_blocks *blocks) {
   }
   parts->info.boundary = parts->boundary_count;
   parts->version = -1;
-  return MPM_OK;
+  return mpmi_find_early(parts, blocks);
 }
 
 static void flag_ghost(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_shared_block *ghost) {

@@ -73,23 +73,55 @@ void mpmi_tiles_clear(const mpmi_parts *parts, int32_t values) {
            (size_t)(tile_doubles(parts, values) * parts->boundary_count) * sizeof *parts->tile);
 }
 
-static mpm_status pack_partner(mpmi_parts *parts, const mpmi_partner *to, int32_t values,
-                               const mpmi_cover *cover) {
-  mpmi_buffer *buffer = &parts->out[to->part];
+/* Returns the box of a sent block that has anything. */
+static mpmi_node_box sent_box(const mpmi_parts *parts, const mpmi_shared_block *block,
+                              const mpmi_cover *cover) {
+  return meet_boxes(parts, &block->box, &cover[block->block].nodes);
+}
+
+/* Gives each block that a partner gets its place in the message, with a head before it. */
+static mpm_status lay_out(mpmi_parts *parts, const mpmi_partner *to, int32_t values,
+                          const mpmi_cover *cover) {
+  const int64_t value = values * (int64_t)sizeof(double);
+  mpmi_shared_block *block = parts->sent + to->first_sent;
+  int64_t bytes = 0;
   for (int64_t i = 0; i < to->sent; ++i) {
-    const mpmi_shared_block *block = &parts->sent[to->first_sent + i];
-    const mpmi_node_box box = meet_boxes(parts, &block->box, &cover[block->block].nodes);
+    const mpmi_node_box box = sent_box(parts, &block[i], cover);
     const int64_t nodes = nodes_in(parts, &box);
+    if (nodes) bytes += (int64_t)sizeof(piece_head) + nodes * value;
+  }
+  char *at = mpmi_buffer_take(parts->context, &parts->out[to->part], bytes);
+  if (!at) return MPM_E_NOMEM;
+  for (int64_t i = 0; i < to->sent; ++i) {
+    const piece_head head = {(int32_t)i, sent_box(parts, &block[i], cover), {0}};
+    const int64_t nodes = nodes_in(parts, &head.box);
+    block[i].place = NULL;
     if (!nodes) continue;
-    const piece_head head = {(int32_t)i, box, {0}};
-    char *at = mpmi_buffer_take(parts->context, buffer,
-                                (int64_t)sizeof head + nodes * values * (int64_t)sizeof(double));
-    if (!at) return MPM_E_NOMEM;
     memcpy(at, &head, sizeof head);
-    copy_box(parts, &box, values, mpmi_tiles_of(parts, block->block, values),
-             (double *)(void *)(at + sizeof head), 0);
+    block[i].place = (double *)(void *)(at + sizeof head);
+    at += (int64_t)sizeof head + nodes * value;
   }
   return MPM_OK;
+}
+
+typedef struct packing {
+  const mpmi_parts *parts;
+  const mpmi_cover *cover;
+  int64_t tasks;
+  int32_t values;
+} packing;
+
+/* Task k copies its share of the sent blocks to their places. */
+static void pack_task(void *data, int64_t k) {
+  const packing *p = data;
+  const mpmi_parts *parts = p->parts;
+  const int64_t end = parts->sent_count * (k + 1) / p->tasks;
+  for (int64_t i = parts->sent_count * k / p->tasks; i < end; ++i) {
+    const mpmi_shared_block *block = &parts->sent[i];
+    const mpmi_node_box box = sent_box(parts, block, p->cover);
+    if (block->place)
+      copy_box(parts, &box, p->values, mpmi_tiles_of(parts, block->block, p->values), block->place, 0);
+  }
 }
 
 /* Puts the status at the beginning, which is there in any case. */
@@ -102,16 +134,34 @@ static mpm_status begin_message(mpmi_parts *parts, int32_t part, mpm_status stat
   return MPM_OK;
 }
 
+static mpm_status pack(mpmi_parts *parts, int32_t values, const mpmi_cover *cover) {
+  packing p = {parts, cover, 1, values};
+  int64_t bytes = 0;
+  for (int64_t i = 0; i < parts->partner_count; ++i) {
+    const mpm_status status = lay_out(parts, &parts->partner[i], values, cover);
+    if (status) return status;
+    bytes += parts->out[parts->partner[i].part].used;
+  }
+  p.tasks = mpmi_copy_tasks(parts->context, bytes);
+  return mpmi_parallel_for(parts->context, p.tasks, pack_task, &p);
+}
+
+static mpm_status begin_messages(mpmi_parts *parts, mpm_status status) {
+  mpm_status bad = MPM_OK;
+  for (int64_t i = 0; i < parts->partner_count; ++i) {
+    const mpm_status now = begin_message(parts, parts->partner[i].part, status);
+    bad = bad ? bad : now;
+  }
+  return bad;
+}
+
 mpm_status mpmi_tiles_send(mpmi_parts *parts, int32_t values, const mpmi_cover *cover, mpm_status status) {
   const double started = mpmi_seconds();
-  for (int64_t i = 0; i < parts->partner_count; ++i) {
-    const mpmi_partner *p = &parts->partner[i];
-    mpm_status bad = begin_message(parts, p->part, status);
-    if (!bad && !status) bad = pack_partner(parts, p, values, cover);
-    if (!bad) continue;
-    status = status ? status : bad;
-    for (int64_t j = 0; j <= i; ++j) begin_message(parts, parts->partner[j].part, status);
-  }
+  const mpm_status before = status;
+  const mpm_status bad = begin_messages(parts, status);
+  if (!status) status = bad;
+  if (!status) status = pack(parts, values, cover);
+  if (status && !before) begin_messages(parts, status);
   for (int64_t i = 0; i < parts->partner_count; ++i) {
     const mpmi_partner *p = &parts->partner[i];
     const mpmi_buffer *out = &parts->out[p->part];

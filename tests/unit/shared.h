@@ -181,5 +181,6 @@ void add_shared_touching(Suite *suite);
 TCase *shared_calls_case(Suite *suite); /* adds the faults */
 TCase *shared_balance_case(void);
 TCase *shared_timed_case(void);
+TCase *shared_threads_case(void);
 
 #endif

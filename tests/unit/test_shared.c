@@ -467,6 +467,7 @@ Suite *shared_suite(void) {
   suite_add_tcase(suite, shared_calls_case(suite));
   suite_add_tcase(suite, shared_balance_case());
   suite_add_tcase(suite, shared_timed_case());
+  suite_add_tcase(suite, shared_threads_case());
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 120);
   tcase_add_loop_test(failures, steps_fail_together, 0, 12);
