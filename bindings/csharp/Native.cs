@@ -320,9 +320,8 @@ namespace Mpm {
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int GatherFn(IntPtr user, long value, long* all);
 
-  /// <summary>For transports that move only when called: called once between send and receive of a sum on nodes,
-  /// after the first of up to eight groups of the blocks that nobody waits for; the others follow after
-  /// receive.</summary>
+  /// <summary>For transports that move only when called: called up to eight times between send and receive of a sum
+  /// on nodes, after each group of the blocks whose sums are made meanwhile.</summary>
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate void TransportPollFn(IntPtr user);
 
@@ -500,9 +499,8 @@ namespace Mpm {
     public IntPtr reduce;
     /// <summary>one integer of each part.</summary>
     public IntPtr gather;
-    /// <summary>For transports that move only when called: called once between send and receive of a sum on nodes,
-    /// after the first of up to eight groups of the blocks that nobody waits for; the others follow after
-    /// receive.</summary>
+    /// <summary>For transports that move only when called: called up to eight times between send and receive of a sum
+    /// on nodes, after each group of the blocks whose sums are made meanwhile.</summary>
     public IntPtr poll;
     /// <summary>passed to all of them.</summary>
     public IntPtr user;

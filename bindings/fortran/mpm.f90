@@ -362,8 +362,8 @@ module mpm
     type(c_funptr) :: reduce
     !> one integer of each part.
     type(c_funptr) :: gather
-    !> For transports that move only when called: called once between send and receive of a sum on nodes, after the
-    !! first of up to eight groups of the blocks that nobody waits for; the others follow after receive.
+    !> For transports that move only when called: called up to eight times between send and receive of a sum on nodes,
+    !! after each group of the blocks whose sums are made meanwhile.
     type(c_funptr) :: poll
     !> passed to all of them.
     type(c_ptr) :: user
@@ -1207,8 +1207,8 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_gather_fn
 
-    !> For transports that move only when called: called once between send and receive of a sum on nodes, after the
-    !! first of up to eight groups of the blocks that nobody waits for; the others follow after receive.
+    !> For transports that move only when called: called up to eight times between send and receive of a sum on nodes,
+    !! after each group of the blocks whose sums are made meanwhile.
     subroutine mpm_transport_poll_fn(user) bind(c)
       import
       type(c_ptr), value :: user

@@ -916,8 +916,8 @@ f(user, value, all): @cfunction(f, Int32, (Ptr{Cvoid}, Int64, Ptr{Int64}))
 const mpm_gather_fn = Ptr{Cvoid}
 
 """
-For transports that move only when called: called once between send and receive of a sum on nodes, after the first of
-up to eight groups of the blocks that nobody waits for; the others follow after receive. May be NULL.
+For transports that move only when called: called up to eight times between send and receive of a sum on nodes, after
+each group of the blocks whose sums are made meanwhile. May be NULL.
 
 f(user): @cfunction(f, Cvoid, (Ptr{Cvoid},))
 """

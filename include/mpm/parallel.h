@@ -100,9 +100,8 @@ typedef struct mpm_transport {
   mpm_receive_fn receive; /**< ends what send started */
   mpm_reduce_fn reduce;   /**< maxima and sums of integers */
   mpm_gather_fn gather;   /**< one integer of each part */
-  /** For transports that move only when called: called once between send and receive of a sum on nodes, after
-   * the first of up to eight groups of the blocks that nobody waits for; the others follow after receive.
-   * May be NULL. */
+  /** For transports that move only when called: called up to eight times between send and receive of a sum on
+   * nodes, after each group of the blocks whose sums are made meanwhile. May be NULL. */
   void (*poll)(void *user);
   void *user; /**< passed to all of them */
 } mpm_transport;

@@ -85,37 +85,53 @@ mpm_status mpmi_agree(mpm_context *context, mpm_status status) {
   return mpmi_take_over(context, parts - (int32_t)first, status);
 }
 
-/* The parts' sums go in portions, first how far up they reach and then their digits. */
+/* The parts' sums go in portions, first how far up they reach and then their digits; riders go before
+ * these. */
 enum { PORTION = 64, WORDS = sizeof(mpmi_exact_part) / sizeof(int64_t) };
 
-static mpm_status total_portion(mpm_context *context, int64_t count, const mpmi_whole_sum *sum,
-                                double *total) {
-  int64_t top[PORTION], word[PORTION * WORDS];
+static mpm_status total_portion(mpm_context *context, int64_t count, const mpmi_whole_sum *sum, double *total,
+                                mpmi_riders *riders) {
+  int64_t top[MPMI_MOST_RIDERS + PORTION], word[MPMI_MOST_RIDERS + PORTION * WORDS];
+  int64_t *const own_top = top + riders->largest_count, *const own = word + riders->sum_count;
   mpmi_exact_part part;
   mpm_status status;
-  for (int64_t i = 0; i < count; ++i) top[i] = sum[i].top;
-  if ((status = mpmi_reduce_parts(context, MPM_REDUCE_MAX, count, top))) return status;
+  memcpy(top, riders->largest, sizeof riders->largest);
+  for (int64_t i = 0; i < count; ++i) own_top[i] = sum[i].top;
+  if ((status = mpmi_reduce_parts(context, MPM_REDUCE_MAX, riders->largest_count + count, top)))
+    return status;
+  memcpy(word, riders->sum, sizeof riders->sum);
   for (int64_t i = 0; i < count; ++i) {
-    part = mpmi_exact_take(&sum[i], (int32_t)top[i]);
-    memcpy(word + i * WORDS, &part, sizeof part);
+    part = mpmi_exact_take(&sum[i], (int32_t)own_top[i]);
+    memcpy(own + i * WORDS, &part, sizeof part);
   }
-  if ((status = mpmi_reduce_parts(context, MPM_REDUCE_SUM, count * WORDS, word))) return status;
+  if ((status = mpmi_reduce_parts(context, MPM_REDUCE_SUM, riders->sum_count + count * WORDS, word)))
+    return status;
+  memcpy(riders->largest, top, (size_t)riders->largest_count * sizeof *top);
+  memcpy(riders->sum, word, (size_t)riders->sum_count * sizeof *word);
   for (int64_t i = 0; i < count; ++i) {
-    memcpy(&part, word + i * WORDS, sizeof part);
-    total[i] = mpmi_exact_value(&part, (int32_t)top[i]);
+    memcpy(&part, own + i * WORDS, sizeof part);
+    total[i] = mpmi_exact_value(&part, (int32_t)own_top[i]);
   }
   return MPM_OK;
 }
 
-mpm_status mpmi_total_parts(mpm_context *context, int64_t count, const mpmi_whole_sum *sum, double *total) {
+mpm_status mpmi_total_parts_with(mpm_context *context, int64_t count, const mpmi_whole_sum *sum,
+                                 double *total, mpmi_riders *riders) {
+  mpmi_riders none = {0};
   mpm_status status = MPM_OK;
   if (mpmi_is_whole(context)) {
     for (int64_t i = 0; i < count; ++i) total[i] = mpmi_exact_total(&sum[i]);
     return MPM_OK;
   }
-  for (int64_t at = 0; at < count && !status; at += PORTION)
-    status = total_portion(context, count - at < PORTION ? count - at : PORTION, sum + at, total + at);
+  for (int64_t at = 0; at < count && !status; at += PORTION, riders = &none)
+    status =
+        total_portion(context, count - at < PORTION ? count - at : PORTION, sum + at, total + at, riders);
   return status;
+}
+
+mpm_status mpmi_total_parts(mpm_context *context, int64_t count, const mpmi_whole_sum *sum, double *total) {
+  mpmi_riders none = {0};
+  return mpmi_total_parts_with(context, count, sum, total, &none);
 }
 
 mpm_status mpm_context_part(const mpm_context *context, int32_t *part, int32_t *parts) {

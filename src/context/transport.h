@@ -31,6 +31,15 @@ mpm_status mpmi_agree(mpm_context *context, mpm_status status);
 mpm_status mpmi_take_over(mpm_context *context, int32_t part, mpm_status status);
 /* Makes the totals of exact sums over all parts. */
 mpm_status mpmi_total_parts(mpm_context *context, int64_t count, const mpmi_whole_sum *sum, double *total);
+/* Words that go along with sums, because each reduction takes as long as the way to the other parts: some
+ * become the largest of all parts, some their sum. */
+enum { MPMI_MOST_RIDERS = 4 };
+typedef struct mpmi_riders {
+  int32_t largest_count, sum_count;
+  int64_t largest[MPMI_MOST_RIDERS], sum[MPMI_MOST_RIDERS];
+} mpmi_riders;
+mpm_status mpmi_total_parts_with(mpm_context *context, int64_t count, const mpmi_whole_sum *sum,
+                                 double *total, mpmi_riders *riders);
 
 /* Integers in the order of numbers, so that the largest of numbers is one of integers. */
 static inline int64_t mpmi_ordered_bits(double x) {

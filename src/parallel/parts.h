@@ -110,6 +110,8 @@ typedef struct mpmi_parts {
   int32_t is_echo;          /* the step fails here because it has failed on a partner */
   mpm_balance_desc balance; /* with what 0 stands for, but in limit */
   int64_t steps;            /* since blocks were given to parts */
+  int64_t look_again;       /* so many of them until a cut that has not paid is looked for again */
+  double refused;           /* the imbalance at which it has not */
   double busy;              /* seconds of steps since blocks were given to parts, without waiting */
   double since; /* when the call under way began, or was last counted in these, by the same clock */
   mpm_parallel_info info;

@@ -86,8 +86,7 @@ mpm_status mpmi_add_up(mpm_stepper *s, mpmi_sums *sums) {
     mpmi_exact_join(&tally->sum[MPMI_TALLY_DAMPING], &s->work.report[k].damping);
   }
   for (int32_t m = 0; m < s->layout.member_count; ++m) mpmi_prescribed_report(step, &s->nodes, m);
-  if ((status = mpmi_total_parts(s->context, tally->count, tally->sum, tally->total)) ||
-      (status = mpmi_together_count(s, sums)) || (status = mpmi_together_touched(s)) ||
+  if ((status = mpmi_together_total(s, sums)) || (status = mpmi_together_touched(s)) ||
       (status = s->settings.heat.any ? mpmi_heat_add_up(step, s->heat) : MPM_OK))
     return status;
   mpmi_tally_read(tally->total, sums);

@@ -24,6 +24,21 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
 static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE,        MPMI_DIRTY_STRESS,
                                 MPMI_DIRTY_SUMS,  MPMI_DIRTY_ACCELERATION, MPMI_DIRTY_IDS};
 enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 12, MOST_NUMBERS = 7 };
+/* What parts tell each other of a set. That of the first sets goes with the rest, and of others apart. */
+enum { SET_WORDS = FLAGS + 2, FIRST_SETS = 4, SETS_AT = OWN_WORDS + 2 * MOST_NUMBERS };
+
+static void put_set(int64_t *word, const mpm_particles *set) {
+  for (int32_t i = 0; i < FLAGS; ++i) word[i] = (set->dirty & flag[i]) != 0;
+  word[FLAGS] = mpmi_ordered_bits(set->mass_max);
+  word[FLAGS + 1] = set->next_id;
+}
+
+static void take_set(const int64_t *word, mpm_particles *set) {
+  for (int32_t i = 0; i < FLAGS; ++i)
+    if (word[i]) set->dirty |= flag[i];
+  set->mass_max = mpmi_of_ordered_bits(word[FLAGS]);
+  set->next_id = word[FLAGS + 1];
+}
 
 /* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
  * are alike. */
@@ -54,7 +69,7 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   mpm_context *c = s->context;
   mpmi_layout *layout = &s->layout;
   if (!mpmi_is_shared(s)) return status;
-  int64_t word[OWN_WORDS + 2 * MOST_NUMBERS] = {0};
+  int64_t word[SETS_AT + FIRST_SETS * SET_WORDS] = {0};
   mpmi_put_number(word, (double)layout->member_count);
   word[2] = !s->history.has_sums;
   word[3] = layout->walls_changed;
@@ -67,7 +82,9 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   word[8] = mpmi_fingerprint(s);
   word[9] = ~word[8];
   mpmi_put_number(&word[10], count_markers(&s->settings.surfaces));
-  const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word);
+  for (int32_t m = 0; m < layout->member_count && m < FIRST_SETS; ++m)
+    put_set(&word[SETS_AT + SET_WORDS * m], layout->member[m].set);
+  const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, sizeof word / sizeof word[0], word);
   if (lost) return lost;
   if (word[7]) return mpmi_agree(c, status);
   if (word[0] != ~word[1])
@@ -89,15 +106,12 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   layout->parts->prescribes = word[6] != 0;
   for (int32_t m = 0; m < layout->member_count; ++m) {
     mpm_particles *set = layout->member[m].set;
-    int64_t of[FLAGS + 2];
-    for (int32_t i = 0; i < FLAGS; ++i) of[i] = (set->dirty & flag[i]) != 0;
-    of[FLAGS] = mpmi_ordered_bits(set->mass_max);
-    of[FLAGS + 1] = set->next_id;
-    if ((status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, FLAGS + 2, of))) return status;
-    for (int32_t i = 0; i < FLAGS; ++i)
-      if (of[i]) set->dirty |= flag[i];
-    set->mass_max = mpmi_of_ordered_bits(of[FLAGS]);
-    set->next_id = of[FLAGS + 1];
+    int64_t *of = &word[SETS_AT + SET_WORDS * (m < FIRST_SETS ? m : 0)];
+    if (m >= FIRST_SETS) {
+      put_set(of, set);
+      if ((status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, SET_WORDS, of))) return status;
+    }
+    take_set(of, set);
   }
   return MPM_OK;
 }
@@ -242,16 +256,21 @@ mpm_status mpmi_together_rates(mpm_stepper *s, mpmi_sums *rates) {
   return status;
 }
 
-mpm_status mpmi_together_count(mpm_stepper *s, mpmi_sums *rates) {
-  if (!mpmi_is_shared(s)) return MPM_OK;
+mpm_status mpmi_together_total(mpm_stepper *s, mpmi_sums *rates) {
+  const mpmi_tally *tally = &s->work.tally;
+  if (!mpmi_is_shared(s)) return mpmi_total_parts(s->context, tally->count, tally->sum, tally->total);
   const int64_t leaving = s->work.report[0].removes ? count_leaving(s) : 0;
-  int64_t sum[] = {s->step.info.active_nodes, leaving};
-  mpm_status status;
-  if ((status = mpmi_together_rates(s, rates)) ||
-      (status = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 2, sum)))
-    return status;
-  s->step.info.active_nodes = sum[0];
-  s->layout.parts->leave_elsewhere = sum[1] - leaving;
+  mpmi_riders riders = {2,
+                        2,
+                        {mpmi_ordered_bits(rates->rate), mpmi_ordered_bits(rates->viscous_rate)},
+                        {s->step.info.active_nodes, leaving}};
+  const mpm_status status =
+      mpmi_total_parts_with(s->context, tally->count, tally->sum, tally->total, &riders);
+  if (status) return status;
+  rates->rate = mpmi_of_ordered_bits(riders.largest[0]);
+  rates->viscous_rate = mpmi_of_ordered_bits(riders.largest[1]);
+  s->step.info.active_nodes = riders.sum[0];
+  s->layout.parts->leave_elsewhere = riders.sum[1] - leaving;
   return MPM_OK;
 }
 

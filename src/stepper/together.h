@@ -40,7 +40,7 @@ mpm_status mpmi_together_vote(mpm_stepper *s, mpm_status status, int64_t exchang
 mpm_status mpmi_together_active(mpm_stepper *s);
 /* Makes the rates the largest of all parts. */
 mpm_status mpmi_together_rates(mpm_stepper *s, mpmi_sums *rates);
-/* Adds up what is to be reported, and how many particles leave. */
-mpm_status mpmi_together_count(mpm_stepper *s, mpmi_sums *rates);
+/* Makes the totals of what is to be reported, and of how many particles leave. */
+mpm_status mpmi_together_total(mpm_stepper *s, mpmi_sums *rates);
 
 #endif

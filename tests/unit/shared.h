@@ -182,5 +182,6 @@ TCase *shared_calls_case(Suite *suite); /* adds the faults */
 TCase *shared_balance_case(void);
 TCase *shared_timed_case(void);
 TCase *shared_threads_case(void);
+void add_shared_callbacks(Suite *suite); /* those of shared_callbacks.c */
 
 #endif

@@ -67,6 +67,55 @@ START_TEST(default_cuts_where_it_pays) {
 }
 END_TEST
 
+/* A body of a few blocks that three parts cannot share evenly, and that is sorted in every step. */
+enum { SORTS = 60 };
+static mpm_status sort_often(world *w, const scene *is, outcome *found) {
+  const mpm_balance_desc never = {sizeof never, 0, (double)INFINITY, 0.0};
+  double dt;
+  mpm_status status = mpm_stepper_set_balance(w->stepper, is->seed ? &never : NULL);
+  if (!status) status = mpm_stable_dt(w->stepper, &dt);
+  for (int32_t i = 0; i < SORTS && !status; ++i) {
+    const int64_t own = mpm_particles_count(w->set[0]);
+    double *x = calloc((size_t)(2 * own + 1), sizeof *x);
+    status = mpm_particles_get(w->set[0], "position", MPM_F64, 2, own, NULL, x);
+    if (!status) status = mpm_particles_set(w->set[0], "position", MPM_F64, 2, own, NULL, x);
+    if (!status) status = mpm_step(w->stepper, 0.01 * dt, NULL);
+    free(x);
+  }
+  (void)found;
+  return status;
+}
+
+static mpm_status set_up_few(world *w, const scene *is) {
+  (void)is;
+  return fill_middle(w, w->set[0], 0.3, 0.6);
+}
+
+START_TEST(cuts_that_do_not_pay_are_seldom_looked_for) {
+  static scene is[2];
+  int64_t calls[2], sorts[2];
+  for (int32_t k = 0; k < 2; ++k) {
+    parts_plan plan;
+    memset(&plan, 0, sizeof plan);
+    is[k] = scene_of(2, 2 * WIDE, set_up_few);
+    is[k].run = sort_often;
+    is[k].seed = (uint64_t)k;
+    ck_assert_msg(!parts_run(3, live, &is[k], &plan), "%s", plan.text);
+    ck_assert_msg(!is[k].found[0].status, "%s", is[k].found[0].text);
+    calls[k] = plan.calls[0];
+    sorts[k] = is[k].found[0].info.resorts;
+  }
+  show("%lld and %lld calls in %lld sorts, imbalance %g\n", (long long)calls[0], (long long)calls[1],
+       (long long)sorts[0], is[0].found[0].parallel.imbalance);
+  ck_assert_uint_eq(is[0].found[0].hash, is[1].found[0].hash);
+  ck_assert_double_gt(is[0].found[0].parallel.imbalance, 1.1);
+  ck_assert_int_eq(is[0].found[0].parallel.cuts, 1);
+  ck_assert_int_ge(sorts[0], SORTS);
+  /* each takes a reduction for every bit of a key; they are looked for when the steps have doubled */
+  ck_assert_int_lt(calls[0] - calls[1], 2 * SORTS);
+}
+END_TEST
+
 /* A state does not have the settings, and those that are there stay. */
 static mpm_status load_and_fly(world *w, const scene *is, outcome *found) {
   saved_state state = {NULL, 0};
@@ -266,6 +315,7 @@ TCase *shared_balance_case(void) {
   tcase_add_loop_test(tests, balance_changes_no_bit, 0, 4);
   tcase_add_test(tests, balance_stays_with_a_state);
   tcase_add_test(tests, default_cuts_where_it_pays);
+  tcase_add_test(tests, cuts_that_do_not_pay_are_seldom_looked_for);
   tcase_add_test(tests, balance_is_alike);
   tcase_add_test(tests, balance_is_checked);
   return tests;

@@ -209,12 +209,58 @@ START_TEST(memory_runs_out_adding) {
 }
 END_TEST
 
+/* Six sets, one after another, of which a part changes those that it has particles of near one side. */
+static mpm_status set_up_sets(world *w, const scene *is) {
+  mpm_status status = set_walls(w);
+  for (int32_t m = 0; m < w->sets && !status; ++m) {
+    const double low[] = {0.1 + 0.13 * m, 0.2}, high[] = {0.23 + 0.13 * m, 0.7};
+    const int32_t per_cell[] = {2, 2};
+    status = mpm_particles_fill_box(w->set[m], low, high, per_cell, NULL, NULL);
+    if (!status) status = set_velocities(w, w->set[m], is->speed * (1.0 + m));
+  }
+  return status;
+}
+
+static mpm_status change_some(mpm_particles *set) {
+  const int64_t n = mpm_particles_count(set);
+  double *v = calloc((size_t)(4 * n) + 1, sizeof *v), *x = v + 2 * n;
+  int64_t changed = 0;
+  mpm_status status = mpm_particles_get(set, "velocity", MPM_F64, 2, n, NULL, v);
+  if (!status) status = mpm_particles_get(set, "position", MPM_F64, 2, n, NULL, x);
+  for (int64_t p = 0; p < n; ++p)
+    if (x[n + p] < 0.3) v[p] *= 0.5, ++changed;
+  if (!status && changed) status = mpm_particles_set(set, "velocity", MPM_F64, 2, n, NULL, v);
+  free(v);
+  return status;
+}
+
+static mpm_status change_in_turn(world *w, const scene *is, outcome *found) {
+  double dt;
+  (void)is, (void)found;
+  mpm_status status = mpm_stable_dt(w->stepper, &dt);
+  for (int32_t i = 0; i < 3 * w->sets && !status; ++i) {
+    status = change_some(w->set[i % w->sets]);
+    if (!status) status = mpm_step(w->stepper, 0.2 * dt, &w->info);
+  }
+  return status;
+}
+
+START_TEST(sets_are_changed) {
+  scene is = scene_of(2, 4 * WIDE, set_up_sets);
+  is.desc.sets = MOST_SETS;
+  is.run = change_in_turn;
+  is.speed = 4.0;
+  ck_assert_int_eq(check_scene(&is, "six sets", 2 + _i), MPM_OK);
+}
+END_TEST
+
 TCase *shared_calls_case(Suite *suite) {
   TCase *tests = tcase_create("calls");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, particles_are_packed, 0, 4);
   tcase_add_loop_test(tests, nodes_are_owned_once, 0, 8);
   tcase_add_test(tests, ids_are_given_once);
+  tcase_add_loop_test(tests, sets_are_changed, 0, 3);
   tcase_add_test(faults_case(suite, "faults of calls", 0), memory_runs_out_adding);
   return tests;
 }

@@ -468,6 +468,7 @@ Suite *shared_suite(void) {
   suite_add_tcase(suite, shared_balance_case());
   suite_add_tcase(suite, shared_timed_case());
   suite_add_tcase(suite, shared_threads_case());
+  add_shared_callbacks(suite);
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 120);
   tcase_add_loop_test(failures, steps_fail_together, 0, 12);

@@ -159,7 +159,7 @@ world_desc world_with(const method *how, int32_t dim, int64_t cells, double h); 
 void world_use(world_desc *desc, const method *how);
 
 /* ---- the world ---- */
-enum { MOST_SETS = 3 };
+enum { MOST_SETS = 6 };
 struct world {
   world_desc desc;
   mpm_context *context;

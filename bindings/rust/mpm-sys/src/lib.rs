@@ -452,8 +452,8 @@ pub type mpm_gather_fn = Option<unsafe extern "C" fn(
     all: *mut i64,
 ) -> mpm_status>;
 
-/// For transports that move only when called: called once between send and receive of a sum on nodes, after the first of
-/// up to eight groups of the blocks that nobody waits for; the others follow after receive. May be NULL.
+/// For transports that move only when called: called up to eight times between send and receive of a sum on nodes, after
+/// each group of the blocks whose sums are made meanwhile. May be NULL.
 pub type mpm_transport_poll_fn = Option<unsafe extern "C" fn(user: *mut c_void)>;
 
 /// A task of the library, which the host's executor calls with the task_data that it was given and a number k. A task
@@ -770,8 +770,8 @@ pub struct mpm_transport {
     pub reduce: mpm_reduce_fn,
     /// one integer of each part
     pub gather: mpm_gather_fn,
-    /// For transports that move only when called: called once between send and receive of a sum on nodes, after the first
-    /// of up to eight groups of the blocks that nobody waits for; the others follow after receive. May be NULL.
+    /// For transports that move only when called: called up to eight times between send and receive of a sum on nodes,
+    /// after each group of the blocks whose sums are made meanwhile. May be NULL.
     pub poll: mpm_transport_poll_fn,
     /// passed to all of them
     pub user: *mut c_void,
