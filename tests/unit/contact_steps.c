@@ -1,5 +1,6 @@
 /* Steps in contact that are refused, cut, or fail, most of them implicit. */
 #include "boxes.h"
+#include "implicit.h"
 
 static mpm_status keep_friction(void *user, const mpm_contact_batch *b, double *friction) {
   (void)user, (void)b, (void)friction;
@@ -44,6 +45,35 @@ START_TEST(implicit_bodies) {
   ck_ok(&w, mpm_step(w.stepper, box_dt, NULL));
   implicit.linear_solver = MPM_SOLVER_MULTIGRID_CG;
   ck_refused(&w, mpm_stepper_configure(w.stepper, &implicit), MPM_E_UNSUPPORTED, "is for one body");
+  world_close(&w);
+}
+END_TEST
+
+/* Blocks that collide: while it stays the same what touches, Newton's method is of second order. */
+START_TEST(implicit_contact_is_quadratic) {
+  const int32_t dim = 1 + _i % 3, tied = _i / 3;
+  const int32_t per_cell[] = {2, 2, 2};
+  world w;
+  world_desc d = implicit_default(dim, 14, 0.1, implicit_basis(1));
+  mpm_contact_desc meets = contact_desc(0.0);
+  d.sets = 2;
+  world_open(&w, &d);
+  if (tied) meets.kind = MPM_CONTACT_TIED;
+  for (int32_t m = 0; m < 2; ++m) {
+    const double low[] = {m ? 0.7 : 0.3, 0.3, 0.3}, high[] = {m ? 1.1 : 0.7, 0.7, 0.7};
+    const double velocity[] = {m ? -0.5 : 0.5, 0.0, 0.0};
+    ck_ok(&w, mpm_particles_fill_box(w.set[m], low, high, per_cell, NULL, NULL));
+    ck_ok(&w, mpm_particles_set_all(w.set[m], "velocity", MPM_F64, dim, velocity));
+  }
+  ck_ok(&w, mpm_stepper_set_body(w.stepper, w.set[1], 1));
+  ck_ok(&w, mpm_stepper_set_contact(w.stepper, 0, 1, &meets));
+  char name[60];
+  snprintf(name, sizeof name, "%s blocks in %d-D", tied ? "tied" : "pushed", (int)dim);
+  for (int32_t k = 0; k < 3; ++k) world_step(&w, 0.03);
+  implicit_quadratic(name, &w, 60.0);
+  mpm_contact_info info = {.struct_size = sizeof info};
+  ck_ok(&w, mpm_stepper_contact_info(w.stepper, 0, 1, &info));
+  ck_assert_int_gt(info.closed, 0);
   world_close(&w);
 }
 END_TEST
@@ -265,6 +295,7 @@ void add_contact_steps(Suite *suite) {
   TCase *steps = tcase_create("steps");
   tcase_set_timeout(steps, 60.0);
   tcase_add_test(steps, implicit_bodies);
+  tcase_add_loop_test(steps, implicit_contact_is_quadratic, 0, 6);
   tcase_add_loop_test(steps, implicit_solvers, 1, 4);
   tcase_add_test(steps, implicit_slip);
   tcase_add_loop_test(steps, implicit_discs, 0, 2);
