@@ -19,7 +19,8 @@ typedef struct slide {
 
 typedef struct slide_outcome {
   double way, stopped_at;
-  double range;            /* of places in the last third of the time: what rests trembles or creeps so far */
+  double range, late; /* of places since it stopped, and in the last third of the time: what rests trembles
+                              or creeps so far */
   double friction, weight; /* mean forces over those of Coulomb and of gravity */
   double spin;             /* angular velocity at the end, > 0 down the slope */
   double balance;          /* impulse less weight and change of momentum, over weight */
@@ -38,7 +39,7 @@ typedef struct slide_series {
   double h, slab;                        /* h: 0 for 1/20 */
   double turn, sliding, creep, stopping; /* tolerances: of ways, over the exact; length; of the way again */
   double weight;      /* and of the mean force of the floor; 0: none, since a block trembles */
-  const char *creeps; /* NULL, or why it creeps on the slope */
+  const char *creeps; /* NULL, or why it creeps that is let go while it swings */
   const char *hops;   /* NULL, or why the mean force of the floor is not the weight */
 } slide_series;
 
