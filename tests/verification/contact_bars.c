@@ -112,11 +112,32 @@ static void keeps_laws(const char *name, const outcome *o) {
 }
 
 /* Of unequal bars that touch from the first. */
+static void velocity_gates(const char *name, const outcome *o) {
+  verify_gate_of(name, "velocity of the first bar", fabs(o->velocity[0]), 0.0, 0.02, source);
+  verify_gate_of(name, "velocity of the second bar", o->velocity[1], 0.39, 0.41, source);
+}
+
 static void strike_gates(const char *name, const outcome *o, double tolerance) {
   verify_gate_of(name, "mean stress / (density c v / 2)", o->stress, 1.0 - tolerance, 1.0 + tolerance,
                  source);
-  verify_gate_of(name, "velocity of the first bar", fabs(o->velocity[0]), 0.0, 0.02, source);
-  verify_gate_of(name, "velocity of the second bar", o->velocity[1], 0.39, 0.41, source);
+  velocity_gates(name, o);
+}
+
+/* On the linear basis the force sways by a fifth, and its mean within the time of the wave is too small; its
+ * impulse is right, as the velocities say. */
+static void strike_with(int32_t basis, const char *name, row touching, FILE *table) {
+  const int32_t linear = basis == MPM_LINEAR;
+  touching.dim = 1;
+  touching.basis = basis;
+  const outcome o = collide(&touching, NULL);
+  char what[90];
+  show(name, &touching, &o, table);
+  snprintf(what, sizeof what, "%s: mean stress / (density c v / 2)", name);
+  verify_judge(what, o.stress, 0.995, 1.005, source,
+               linear ? "particles that cross nodes shake the force; its whole impulse is right" : NULL);
+  verify_gate_of(name, "scatter of the stress", o.scatter, 0.0, linear ? 0.25 : 0.02, source);
+  velocity_gates(name, &o);
+  keeps_laws(name, &o);
 }
 
 int main(int argc, char **argv) {
@@ -143,6 +164,8 @@ int main(int argc, char **argv) {
     verify_gate_of(name[dim - 1], "scatter of the stress", o.scatter, 0.0, 0.02, source);
     keeps_laws(name[dim - 1], &o);
   }
+  strike_with(MPM_LINEAR, "unequal bars, linear", touching, table);
+  strike_with(MPM_BSPLINE3, "unequal bars, cubic", touching, table);
   row implicit = touching;
   implicit.scheme = MPM_NEWMARK;
   for (int32_t k = 0; k < (verify_quick() ? 1 : 3); ++k) {
