@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* What the library does where the host has set no limit: the imbalance at which a cut is looked for; how many
- * of its steps it costs to move a particle, five by the copies alone; and how much larger the imbalance must
+ * of its steps it costs to move a particle, eight by the copies alone; and how much larger the imbalance must
  * be for a cut to be looked for before it is time. */
 static const double usual_limit = 1.1, move_steps = 10.0, grows = 1.1;
 

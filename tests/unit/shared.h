@@ -99,6 +99,12 @@ typedef struct hungry {
   int32_t acts;
 } hungry;
 void check_hunger(const hungry *as, parts_fn lives);
+/* Makes a call once more that has failed with this status, and counts that in failed[part]. */
+#define AGAIN(of, part, status, fault, call)                                                                 \
+  do {                                                                                                       \
+    (status) = (call);                                                                                       \
+    (of)->failed[part] += (status) == (fault);                                                               \
+  } while ((status) == (fault) && (of)->failed[part] == 1)
 /* Around what memory may fail in: allocations count from `before`. */
 void begin_hunger(const hungry *h, world *w, int32_t part, int64_t before);
 void end_hunger(hungry *h, world *w, int32_t part, int64_t before);
@@ -119,6 +125,8 @@ mpm_status check_scene(const scene *is, const char *name, int32_t parts);
  * move at first. */
 enum { LEADS = 1, HOLDS = 2, PULLS = 4, MOVES = 8 };
 scene implicit_scene(int32_t dim, const basis_option *basis, int32_t quasi_static);
+/* Some particles of a set are prescribed. */
+mpm_status lead_some(mpm_particles *set, int32_t dim);
 /* An implicit step that no part can make, and then others. */
 mpm_status fail_implicitly(world *w, const scene *is, outcome *found);
 

@@ -114,22 +114,6 @@ static mpm_status equip(world *w, counter *of, mpm_obstacle **plate) {
   return status ? status : add_plate(w, of, plate);
 }
 
-static mpm_status lead_some(mpm_particles *set) {
-  const int64_t n = mpm_particles_count(set);
-  uint8_t *flag = calloc((size_t)(2 * n) + 1, 1);
-  for (int64_t p = 0; p < n; ++p) flag[p] = p % 17 == 0;
-  const mpm_status status = mpm_particles_set(set, "prescribed", MPM_U8, 2, n, NULL, flag);
-  free(flag);
-  return status;
-}
-
-/* Makes a call again where a callback has refused. */
-#define AGAIN(of, part, status, call)                                                                        \
-  do {                                                                                                       \
-    (status) = (call);                                                                                       \
-    (of)->failed[part] += (status) == MPM_E_CALLBACK;                                                        \
-  } while ((status) == MPM_E_CALLBACK && (of)->failed[part] == 1)
-
 static void live_refusing(int32_t part, const mpm_transport *transport, void *user) {
   refusing *all = user;
   outcome *found = &all->is.found[part];
@@ -146,11 +130,12 @@ static void live_refusing(int32_t part, const mpm_transport *transport, void *us
   mpm_status status = world_try_open(&w);
   if (!status) status = equip(&w, &mine, &plate);
   if (!status) status = fill_middle(&w, w.set[0], 0.2, 0.7);
-  if (!status) status = lead_some(w.set[0]);
+  if (!status) status = lead_some(w.set[0], 2);
   mine.refuse_at = part == fault->part && fault->at ? mine.calls + fault->at : 0;
   const int64_t before = mine.calls;
-  if (!status) AGAIN(all, part, status, mpm_stable_dt(w.stepper, &dt));
-  for (int32_t i = 0; i < 3 && !status; ++i) AGAIN(all, part, status, mpm_step(w.stepper, 0.3 * dt, NULL));
+  if (!status) AGAIN(all, part, status, MPM_E_CALLBACK, mpm_stable_dt(w.stepper, &dt));
+  for (int32_t i = 0; i < 3 && !status; ++i)
+    AGAIN(all, part, status, MPM_E_CALLBACK, mpm_step(w.stepper, 0.3 * dt, NULL));
   all->calls[part] = mine.calls - before;
   if (!status) status = mpm_state_hash(w.stepper, &found->hash);
   found->status = status;

@@ -16,8 +16,8 @@ static world_law law_of(int32_t i) {
   return law;
 }
 
-/* Some particles of a set are led; those that are held in every direction keep still. */
-static mpm_status lead_some(mpm_particles *set, int32_t dim) {
+/* Those that are held in every direction keep still. */
+mpm_status lead_some(mpm_particles *set, int32_t dim) {
   const int64_t n = mpm_particles_count(set);
   int64_t *id = calloc((size_t)n + 1, sizeof *id);
   uint8_t *flags = calloc((size_t)(n * dim) + 1, 1);

@@ -390,13 +390,6 @@ START_TEST(transport_is_lost) {
 }
 END_TEST
 
-/* Tries a call until it is not for want of memory that it fails. */
-#define AGAIN(h, part, status, call)                                                                         \
-  do {                                                                                                       \
-    (status) = (call);                                                                                       \
-    (h)->failed[part] += (status) == MPM_E_NOMEM;                                                            \
-  } while ((status) == MPM_E_NOMEM)
-
 /* Memory does not fail, and is not counted, where a call concerns one part alone: the others would wait. */
 static mpm_status set_fed_velocities(world *w, double speed) {
   const int64_t calls = w->memory.calls, fail_at = w->memory.fail_at;
@@ -420,11 +413,12 @@ static void live_hungry(int32_t part, const mpm_transport *transport, void *user
   if (!status && h->loads) status = add_loads(&w, 0.45, 0.2, &surface);
   const int64_t opened = w.memory.calls;
   begin_hunger(h, &w, part, opened);
-  if (!status) AGAIN(h, part, status, fill_middle(&w, w.set[0], 0.2, 0.7));
+  if (!status) AGAIN(h, part, status, MPM_E_NOMEM, fill_middle(&w, w.set[0], 0.2, 0.7));
   if (!status) status = set_fed_velocities(&w, h->is.speed);
-  if (!status) AGAIN(h, part, status, mpm_stable_dt(w.stepper, &dt));
+  if (!status) AGAIN(h, part, status, MPM_E_NOMEM, mpm_stable_dt(w.stepper, &dt));
   const int32_t steps = faults_are_full() ? 4 : 12; /* all that is allocated anew is so in the first ones */
-  for (int32_t i = 0; i < steps && !status; ++i) AGAIN(h, part, status, mpm_step(w.stepper, 0.3 * dt, NULL));
+  for (int32_t i = 0; i < steps && !status; ++i)
+    AGAIN(h, part, status, MPM_E_NOMEM, mpm_step(w.stepper, 0.3 * dt, NULL));
   end_hunger(h, &w, part, opened);
   if (!status) status = mpm_state_hash(w.stepper, &found->hash);
   found->status = status;
