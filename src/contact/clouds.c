@@ -206,6 +206,9 @@ static void pull_back(const cloud_particles *of, const mpm_grid *grid, int64_t p
   }
 }
 
+/* Each cloud is a place in memory of its own to write to, and is asked for so many entries ahead. */
+enum { AHEAD = 8 };
+
 static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of, const mpm_grid *grid,
                          int64_t p) {
   const cloud_tile *tile = of->tile;
@@ -227,6 +230,7 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
       for (int32_t k = 0; k < axis[2].width; ++k) {
         if (cloud[k] < 0 || !(w * axis[2].w[k] > 0.0)) continue;
         mpmi_cloud *to = &clouds[cloud[k]];
+        __builtin_prefetch(&entries[to->first + to->count + AHEAD], 1);
         entries[to->first + to->count++] =
             (mpmi_cloud_entry){.slot = slot, .member = member, .volume = share * axis[2].w[k]};
         /* the last axes are those of the grid */

@@ -37,22 +37,24 @@ typedef struct edges_in_turn {
   double volume, half, ball;
 } edges_in_turn;
 
-/* Collects some particles of one set, in a row from `at` on. */
-static void collect_some(around *of, const mpmi_cloud_frame *frame, const mpm_particles *set,
-                         const mpmi_cloud_entry *entry, int64_t count, int64_t at, edges_in_turn *edges) {
-  for (int32_t k = 0; k < frame->dim; ++k) {
-    const double *position = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld;
-    for (int64_t e = 0; e < count; ++e)
-      of->x[k][at + e] = mpmi_cloud_coordinate(frame, k, position[entry[e].slot]);
-  }
-  for (int64_t e = 0; e < count; ++e) {
-    const double volume = mpmi_initial_extent(set, entry[e].slot), share = entry[e].volume;
+/* Collects particles in a row from `at` on, up to the first of another set, and returns how many. */
+static int64_t collect_set(around *of, const mpmi_cloud_frame *frame, const mpm_particles *set,
+                           const mpmi_cloud_entry *entry, int64_t count, int64_t at, edges_in_turn *edges) {
+  const double *position = mpmi_f64(set, MPMI_POSITION, 0);
+  const int32_t member = entry->member;
+  int64_t e = 0;
+  for (; e < count && entry[e].member == member; ++e) {
+    const int64_t slot = entry[e].slot;
+    const double volume = mpmi_initial_extent(set, slot), share = entry[e].volume;
+    for (int32_t k = 0; k < frame->dim; ++k)
+      of->x[k][at + e] = mpmi_cloud_coordinate(frame, k, position[k * set->ld + slot]);
     if (volume < edges->volume || volume > edges->volume) edges->half = mpmi_half_edge(frame->dim, volume);
     edges->volume = volume;
     edges->ball += share * edges->half * edges->half / 3.0;
     of->weight[at + e] = share;
     of->half_edge[at + e] = edges->half;
   }
+  return e;
 }
 
 /* Collects the particles of one party. */
@@ -66,10 +68,9 @@ static void collect(around *of, int32_t which) {
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
     const mpmi_cloud *source = &contact->cloud[contact->cloud[i].source];
     const mpmi_cloud_frame frame = mpmi_cloud_frame_of(&layout->blocks, &contact->cloud[i]);
-    for (int64_t e = source->first, next, end = e + source->count; e < end; at += next - e, e = next) {
+    for (int64_t e = source->first, some, end = e + source->count; e < end; at += some, e += some) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
-      for (next = e + 1; next < end && contact->entry[next].member == entry->member;) ++next;
-      collect_some(of, &frame, mpmi_resident_set(layout, entry->member), entry, next - e, at, &edges);
+      some = collect_set(of, &frame, mpmi_resident_set(layout, entry->member), entry, end - e, at, &edges);
     }
   }
   for (int32_t k = 0; k < grid->dim; ++k)
@@ -269,14 +270,25 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, dou
   if (!mpmi_detects_by_velocity(touch->rule)) touch->open = !(touch->gap <= grid->h_min);
 }
 
+/* Asks for the particles of a touch of bodies, which were written some time ago. */
+static void fetch_touch(const mpmi_contact_nodes *contact, const mpmi_touch *touch) {
+  enum { IN_LINE = 64 / (int32_t)sizeof(mpmi_cloud_entry) };
+  for (int32_t which = 0; which < 2 && !mpmi_is_of_surface(contact, touch); ++which) {
+    const mpmi_cloud *cloud = &contact->cloud[contact->party[touch->party[which]].first_cloud];
+    for (int64_t e = 0; e < cloud->count; e += IN_LINE) __builtin_prefetch(&contact->entry[cloud->first + e]);
+  }
+}
+
 /* Touches that are open at once cost less than others, and lie side by side: tasks take a few in turn. */
 static void find_task(void *data, int64_t k) {
   const mpmi_contact_search *search = data;
   mpmi_contact_nodes *contact = search->contact;
   const int32_t tasks = search->step->settings->tasks;
   for (int64_t i = 0; i < contact->touch_count; ++i)
-    if (i / IN_TURN % tasks == k && !mpmi_is_of_surface(contact, &contact->touch[i]))
+    if (i / IN_TURN % tasks == k && !mpmi_is_of_surface(contact, &contact->touch[i])) {
+      if (i + 1 < contact->touch_count) fetch_touch(contact, &contact->touch[i + 1]);
       find_touch(search, &contact->touch[i], contact->work + k * contact->work_each);
+    }
 }
 
 mpm_status mpmi_gaps_find(mpmi_contact_search *search) {
