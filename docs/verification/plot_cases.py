@@ -126,7 +126,7 @@ def contact_implicit():
 
 @plot
 def contact_discs():
-    figure, ax = axes(2)
+    figure, ax = axes(4, width=4.0)
     data, table = read("contact_discs"), read("contact_discs_table")
     fine = [(1 / n, 0.909 - r) for case, n, r in zip(table["case"], table["cells"], table["rebound"]) if case == "refinement"]
     ax[0].plot(*zip(*fine), "o-", label="0.909 - rebound")
@@ -140,6 +140,21 @@ def contact_discs():
     ax[1].set_xlabel("t")
     ax[1].set_ylabel("energy / first")
     ax[1].legend()
+    shifts = ("0.1, 0.3", "0.25, 0.25", "0.37, 0.11", "0.5, 0.5", "0.8, 0.6")
+    for case, names in (("shifted", shifts), ("turned", ("0°", "20°", "33°", "45°"))):
+        found = [r for c, r in zip(table["case"], table["rebound"]) if c == case]
+        ax[2].plot([f"{n} h" if case == "shifted" else n for n in names], found, "o", label=case)
+    ax[2].set_ylim(0.8, 0.92)
+    ax[2].tick_params(axis="x", rotation=60)
+    ax[2].set_ylabel("rebound / speed, h = 1/40")
+    ax[2].legend()
+    rigid = 0.1 * math.sqrt(2) / (3 * 0.2)
+    for basis in ("quadratic", "cubic"):
+        spins = {c: -s / rigid for c, n, s in zip(table["case"], table["cells"], table["spin"]) if n == 40}
+        ax[3].plot(["0", "0.3", "10"], [spins[f"oblique with friction {f} ({basis})"] for f in ("0", "0.3", "10")], "o", label=basis)
+    ax[3].set_xlabel("friction")
+    ax[3].set_ylabel("spin / that of rigid discs that stick")
+    ax[3].legend()
     return figure
 
 

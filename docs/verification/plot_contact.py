@@ -1,4 +1,4 @@
-"""Contact of bodies: a slab, a stack, a row of discs, a corner, a rod that bores."""
+"""Contact of bodies: a slab, a stack, a row of discs, a corner, a rod that bores; all scenes by all methods."""
 from plot import axes, loglog, plot, read, slope, ticks
 from plot_cases import rows
 
@@ -103,6 +103,26 @@ def contact_rod():
     ax[1].set_ylim(0, 400)
     for panel, label in zip(ax, ("bored / mm", "mean pressure on the face / MPa")):
         panel.set_xlabel("t / us")
+        panel.set_ylabel(label)
+        panel.legend()
+    return figure
+
+
+@plot
+def contact_methods():
+    figure, ax = axes(2, width=6.0, height=4.2)
+    data = read("contact_methods")
+    scenes = list(dict.fromkeys(data["scene"]))
+    for panel, key, gate, label in ((ax[0], "energy", 5e-4, "energy above that of the start / that"),
+                                    (ax[1], "momentum", 1e-12, "momentum less impulses / all")):
+        for k, scheme in enumerate(("USL", "USF", "MUSL")):
+            at = [(scenes.index(c) + 0.2 * (k - 1), max(v, 1e-17)) for c, s, t, b, v in
+                  zip(data["scene"], data["scheme"], data["transfer"], data["basis"], data[key])
+                  if s == scheme and (b != "linear" or t == "FLIP")]
+            panel.plot(*zip(*at), "o", markersize=3, label=scheme)
+        panel.axhline(gate, color="k", linewidth=0.8)
+        panel.set_yscale("log")
+        panel.set_xticks(range(len(scenes)), scenes, rotation=40, ha="right")
         panel.set_ylabel(label)
         panel.legend()
     return figure

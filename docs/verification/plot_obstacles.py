@@ -5,7 +5,7 @@ from plot_cases import rows
 
 @plot
 def obstacle_slope():
-    figure, ax = axes(2)
+    figure, ax = axes(3)
     blocks, discs = read("obstacle_slope_block"), read("obstacle_slope_disc")
     for basis in ("linear", "quadratic", "cubic"):
         at = rows(blocks, case="slides", name=f"plane ({basis})")
@@ -26,6 +26,17 @@ def obstacle_slope():
     slope(ax[1], (10, 20), 0.3, -1)
     ticks(ax[1], (10, 20))
     ax[1].legend(fontsize=7)
+    for k, support in enumerate(("plane", "rigid body")):
+        at = rows(discs, case="rolls settled", support=support)
+        for value, exact, mark in (("way", "exact", "o-"), ("spin", "exact_spin", "s--")):
+            worst = {}
+            for h, v, e in zip(at["h"], at[value], at[exact]):
+                worst[h] = max(worst.get(h, 0), abs(v / e - 1))
+            ax[2].plot([0.4 / h for h in worst], list(worst.values()), f"C{k}{mark}", label=f"{support}: {value}, settled disc rolls")
+    loglog(ax[2], "R / h", "error / exact")
+    slope(ax[2], (10, 40), 0.2, -1)
+    ticks(ax[2], (10, 20, 40))
+    ax[2].legend(fontsize=7)
     return figure
 
 
