@@ -173,7 +173,8 @@ const MPM_CONTACT_UNILATERAL = Int32(0) # they push each other and never pull, w
 const MPM_CONTACT_NONE = Int32(1) # they pass through each other
 const MPM_CONTACT_TIED = Int32(2) # neither slip nor separation at nodes that both have
 
-# How the normal at a node is found: mpm_contact_desc.normal.
+# How the normal at a node is found: mpm_contact_desc.normal. One plane parts two bodies at a node: what is thinner
+# than two cells and lies between two faces of one other body is gripped by it.
 const MPM_NORMAL_LOGISTIC = Int32(0) # of the plane that separates the particles best
 const MPM_NORMAL_DISCRIMINANT = Int32(1) # of Fisher's linear discriminant
 const MPM_NORMAL_GRADIENT = Int32(2) # of the mean gradient of volume

@@ -29,7 +29,8 @@ enum mpm_contact_value {
   MPM_CONTACT_NONE = 1,       /**< they pass through each other */
   MPM_CONTACT_TIED = 2        /**< neither slip nor separation at nodes that both have */
 };
-/** How the normal at a node is found: mpm_contact_desc.normal. */
+/** How the normal at a node is found: mpm_contact_desc.normal. One plane parts two bodies at a node: what is
+ * thinner than two cells and lies between two faces of one other body is gripped by it. */
 enum mpm_normal_value {
   MPM_NORMAL_LOGISTIC = 0,     /**< of the plane that separates the particles best: logistic regression */
   MPM_NORMAL_DISCRIMINANT = 1, /**< of Fisher's linear discriminant: one pass, for smooth surfaces */

@@ -37,10 +37,11 @@ extern "C" {
 
 /** How the nodes conduct. */
 enum mpm_conduction_value {
-  /** By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused
-   * with MPM_CUT_DT, and mpm_stable_dt() takes the bound into account. So are steps in which a film of
-   * mpm_surface_set_heat() would take more from a particle than its difference to the ambient, of which
-   * mpm_stable_dt() knows nothing. */
+  /** By the temperatures at the start of the step. Steps longer than 1 / (2 diffusivity sum 1 / h_k^2), h_k
+   * the spacings, are refused with MPM_CUT_DT, and mpm_stable_dt() takes the bound into account; with
+   * total_lagrangian = 1 spacings are those that the deformation has made of them. So are steps in which a
+   * film of mpm_surface_set_heat() would take more from a particle than its difference to the ambient, of
+   * which mpm_stable_dt() knows nothing. */
   MPM_CONDUCTION_EXPLICIT = 0,
   /** By those at its end (backward Euler), found by conjugate gradients: any step will do. */
   MPM_CONDUCTION_IMPLICIT = 1

@@ -11,7 +11,7 @@
 
 /* Touches of one meeting are swept until what is left is this share of the first sweep. */
 static const double settled = 1e-13;
-enum { SWEEPS = 30 };
+enum { SWEEPS = 30, SWEEPS_OF_FREE = 1000 }; /* a light obstacle on heavy nodes takes hundreds */
 
 /* ---- parties ------------------------------------------------------------------------------------------- */
 /* A surface counts by itself where it is free, and has no mass of its own else. */
@@ -332,7 +332,7 @@ static double sweep_listed(const contact_job *job) {
   double first = 0.0;
   for (int64_t i = 0; i < contact->coupled_count; ++i)
     begin_meeting(job, &contact->meeting[contact->coupled[i]]);
-  for (int32_t sweep = 0; sweep < SWEEPS; ++sweep) {
+  for (int32_t sweep = 0; sweep < SWEEPS_OF_FREE; ++sweep) {
     double most = 0.0;
     for (int64_t i = 0; i < contact->coupled_count; ++i) {
       const mpmi_meeting *meeting = &contact->meeting[contact->coupled[i]];

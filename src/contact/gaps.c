@@ -175,9 +175,16 @@ static void mean_gradient(const around *of, int32_t images, double *gradient) {
   }
 }
 
-static int32_t gradient_normal(const double *gradient, double *n) {
+/* Returns 0 where both are all around the node, and no gradient is left but rounding. */
+static int32_t gradient_normal(const mpm_grid *grid, const double *gradient, double *n) {
   const double squared = gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2];
-  if (!(squared > 0.0)) return 0;
+  double cell = 1.0, inverse = grid->inverse_spacing[0];
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    cell *= grid->desc.spacing[k];
+    inverse = fmin(inverse, grid->inverse_spacing[k]);
+  }
+  const double least = 1e-10 * cell * inverse; /* of its smallest face */
+  if (!(squared > least * least)) return 0;
   for (int32_t k = 0; k < 3; ++k) n[k] = gradient[k] / sqrt(squared);
   return 1;
 }
@@ -225,7 +232,7 @@ static int32_t plane_normal(around *of, mpmi_touch *touch) {
 static int32_t find_normal(around *of, const double *gradient, mpmi_touch *touch) {
   const mpm_contact_desc *rule = touch->rule;
   if (rule->kind == MPM_CONTACT_TIED || rule->normal == MPM_NORMAL_GRADIENT)
-    return gradient_normal(gradient, touch->normal);
+    return gradient_normal(of->search->step->layout->blocks.grid, gradient, touch->normal);
   if (rule->normal != MPM_NORMAL_FIXED) return plane_normal(of, touch);
   for (int32_t k = 0; k < 3; ++k) touch->normal[k] = touch->direction_sign * rule->direction[k];
   return 1;

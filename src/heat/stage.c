@@ -222,7 +222,11 @@ static void add(mpmi_heat_sums *to, const mpmi_heat_sums *of) {
 
 void mpmi_heat_commit(const mpmi_step *step, const mpmi_heat *heat, mpmi_heat_history *history) {
   const mpmi_heat_rules *rules = &step->settings->heat;
-  if (!rules->any) return;
+  if (!rules->any) {
+    memset(&history->last, 0, sizeof history->last);
+    history->iterations = 0;
+    return;
+  }
   for (int32_t m = 0; m < step->layout->member_count; ++m)
     if (rules->set[m].on && step->layout->member[m].set->slots)
       commit_set(&rules->set[m], &step->work->rows.of[m], step->layout->member[m].set);

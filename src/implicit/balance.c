@@ -105,7 +105,6 @@ mpm_status mpmi_balance_prepare(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   mpm_status status;
   find_stencil(balance->settings, &newton->stencil);
-  newton->history_count = 0;
   if ((status = prepare_history(balance)) || (status = prepare_work(balance)) ||
       (status = mpmi_nodal_reserve(c, &newton->force, slots, 4)))
     return status;

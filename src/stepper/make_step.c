@@ -84,6 +84,7 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
       .stepper = s,
       /* the nodes are those of the step before until they are counted */
       .info = {.dt = dt, .set = -1, .particle = -1, .node = -1, .active_nodes = history->last.active_nodes}};
+  if (s->newton) s->newton->history_count = 0;
   mpmi_reports_clear(&s->work, s->settings.tasks);
   mpmi_time_begin(s->layout.parts);
   if (mpmi_is_shared(s)) {

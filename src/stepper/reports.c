@@ -150,7 +150,7 @@ mpm_status mpm_stepper_residuals(const mpm_stepper *s, int32_t capacity, double 
   const mpm_status status = mpmi_check_count(s->context, "capacity", capacity);
   if (status) return status;
   if (capacity && !residual) return mpmi_fail(s->context, MPM_E_ARG, "residual is NULL");
-  const int32_t known = s->newton && mpmi_is_implicit(&s->settings) ? s->newton->history_count : 0;
+  const int32_t known = s->newton ? s->newton->history_count : 0;
   for (int32_t i = 0; i < known && i < capacity; ++i) residual[i] = s->newton->history[i];
   *count = known;
   return MPM_OK;

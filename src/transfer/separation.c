@@ -58,12 +58,15 @@ MPMI_INLINE double moments(int32_t dim, const mpmi_separation *in, int32_t cloud
 
 /* The plane starts steep, four times the unit direction, and half-way between the means. */
 MPMI_INLINE int32_t discriminate(int32_t dim, mpmi_separation *io) {
-  double mean[2][3], scatter[4][4] = {{0.0}}, direction[3] = {0.0, 0.0, 0.0}, squared = 0.0;
-  const double steep = 4.0;
+  double mean[2][3], scatter[4][4] = {{0.0}}, direction[3] = {0.0, 0.0, 0.0}, squared = 0.0, apart = 0.0;
+  const double steep = 4.0, at_one_place = 1e-20; /* squares of cells: means that differ by rounding */
   for (int32_t c = 0; c < 2; ++c)
     if (!(moments(dim, io, c, mean[c], scatter) > 0.0)) return 0;
-  for (int32_t k = 0; k < dim; ++k) direction[k] = mean[1][k] - mean[0][k];
-  if (!solve(dim, scatter, direction)) return 0;
+  for (int32_t k = 0; k < dim; ++k) {
+    direction[k] = mean[1][k] - mean[0][k];
+    apart += direction[k] * direction[k];
+  }
+  if (!(apart > at_one_place) || !solve(dim, scatter, direction)) return 0;
   for (int32_t k = 0; k < dim; ++k) squared += direction[k] * direction[k];
   if (!(squared > 0.0) || !(squared - squared == 0.0)) return 0;
   io->plane[0] = io->plane[1] = io->plane[2] = io->plane[3] = 0.0;

@@ -301,6 +301,27 @@ START_TEST(comes_and_goes) {
 }
 END_TEST
 
+/* What the last step gave is nothing once no set has heat; totals stay. */
+START_TEST(last_step_without_heat) {
+  world w;
+  const world_desc desc = world_default(2, 8, 0.25);
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill_cube(&w, set, 0.5, 1.0);
+  mpm_heat_desc d = heat_desc(2.0, 1.0);
+  d.source = warm_middle;
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &d));
+  world_step(&w, 1e-5);
+  const mpm_heat_info first = heat_told(&w);
+  ck_assert(first.gained != 0.0 && first.sources != 0.0);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, NULL));
+  world_step(&w, 1e-5);
+  const mpm_heat_info last = heat_told(&w);
+  ck_assert(last.gained == 0.0 && last.sources == 0.0);
+  ck_assert(last.gained_total == first.gained_total && last.sources_total == first.sources_total);
+  world_close(&w);
+}
+END_TEST
+
 void add_heat_states(Suite *suite) {
   TCase *states = tcase_create("states");
   tcase_add_loop_test(states, threads_and_states, 0, 6 * BROAD);
@@ -310,6 +331,7 @@ void add_heat_states(Suite *suite) {
   tcase_add_test(states, refusals);
   tcase_add_loop_test(states, nothing_is_free, 0, 2);
   tcase_add_test(states, comes_and_goes);
+  tcase_add_test(states, last_step_without_heat);
   tcase_set_timeout(states, 120);
   suite_add_tcase(suite, states);
 }

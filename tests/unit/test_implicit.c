@@ -44,6 +44,29 @@ void implicit_quadratic(const char *name, const world *w, double C) {
   ck_assert_msg(checked > 0, "%s: no residual to check", name);
 }
 
+/* The history is that of the last step, whatever the scheme is by now. */
+START_TEST(history_of_a_step) {
+  world w;
+  world_desc d = implicit_default(2, 12, 0.1, implicit_basis(0));
+  mpm_particles *set = world_open(&w, &d);
+  implicit_block(&w, set, 0.42, 0.67, (const double[]){0.7, -0.4});
+  mpm_stepper_desc other = d.stepper;
+  other.scheme = MPM_USL;
+  other.transfer = MPM_FLIP;
+  double residual[IMPLICIT_HISTORY];
+  world_step(&w, 0.01);
+  const int32_t known = implicit_history(&w, residual);
+  ck_assert_int_gt(known, 0);
+  ck_ok(&w, mpm_stepper_configure(w.stepper, &other));
+  ck_assert_int_eq(implicit_history(&w, residual), known);
+  world_step(&w, 1e-5);
+  ck_assert_int_eq(implicit_history(&w, residual), 0);
+  ck_ok(&w, mpm_stepper_configure(w.stepper, &d.stepper));
+  ck_assert_int_eq(implicit_history(&w, residual), 0);
+  world_close(&w);
+}
+END_TEST
+
 /* A free body keeps its velocity and its shape at any dt. */
 START_TEST(free_flight) {
   const basis_option *basis = implicit_basis(_i % IMPLICIT_BASES);
@@ -454,6 +477,7 @@ Suite *implicit_suite(void) {
   Suite *suite = suite_create("implicit");
   TCase *tests = tcase_create("steps");
   tcase_set_timeout(tests, 60.0);
+  tcase_add_test(tests, history_of_a_step);
   tcase_add_loop_test(tests, free_flight, 0, 3 * IMPLICIT_BASES);
   tcase_add_loop_test(tests, one_unknown, 0, 3);
   tcase_add_loop_test(tests, sagging_block, 0, 6 * IMPLICIT_BASES);

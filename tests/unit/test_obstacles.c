@@ -528,6 +528,28 @@ START_TEST(long_cells) {
 END_TEST
 
 /* ---- rules --------------------------------------------------------------------------------------------- */
+/* What is bound moves as the obstacle does, also when that turns; in 3-D about its z alone. */
+static void moves_with(world *w, const mpm_obstacle *o, double tolerance) {
+  const int32_t dim = w->dim;
+  double c[3], v[3], spin[3];
+  int64_t n;
+  ck_ok(w, mpm_obstacle_get_pose(o, c, NULL, v, spin));
+  for (int32_t k = 0; k < 3; ++k) c[k] -= arena_dt * v[k]; /* it was there when the step began */
+  double *gap = fetch_nodes(w, "contact_gap", &n), *of_nodes = fetch_nodes(w, "velocity", &n);
+  double *x = fetch_nodes(w, "position", &n);
+  for (int64_t i = 0; i < n; ++i) {
+    if (!isfinite(gap[i])) continue;
+    for (int32_t k = 0; k < dim; ++k) {
+      const double turns = dim == 1 ? 0.0
+                           : k == 0 ? -spin[2] * (x[n + i] - c[1])
+                           : k == 1 ? spin[2] * (x[i] - c[0])
+                                    : 0.0;
+      ck_within("tied", of_nodes[k * n + i], v[k] + turns, tolerance);
+    }
+  }
+  free(gap), free(of_nodes), free(x);
+}
+
 START_TEST(kinds_of_contact) {
   const int32_t dim = _i, down = dim == 1 ? 0 : 1;
   for (int32_t kind = MPM_CONTACT_UNILATERAL; kind <= MPM_CONTACT_TIED; ++kind)
@@ -548,32 +570,43 @@ START_TEST(kinds_of_contact) {
       const mpm_contact_info got = touch_of(&w, o);
       ck_assert_int_eq(got.nodes > 0, kind != MPM_CONTACT_NONE);
       if (kind == MPM_CONTACT_TIED) {
-        /* what is bound moves as the obstacle does, also when that turns */
-        double c[3], v[3], spin[3];
-        int64_t n;
         ck_assert_int_eq(got.stuck, got.nodes);
-        ck_ok(&w, mpm_obstacle_get_pose(o, c, NULL, v, spin));
-        for (int32_t k = 0; k < 3; ++k) c[k] -= arena_dt * v[k]; /* it was there when the step began */
-        double *gap = fetch_nodes(&w, "contact_gap", &n), *of_nodes = fetch_nodes(&w, "velocity", &n);
-        double *x = fetch_nodes(&w, "position", &n);
-        for (int64_t i = 0; i < n; ++i) {
-          if (!isfinite(gap[i])) continue;
-          for (int32_t k = 0; k < dim; ++k) {
-            const double turns = dim == 1 ? 0.0
-                                 : k == 0 ? -spin[2] * (x[n + i] - c[1])
-                                 : k == 1 ? spin[2] * (x[i] - c[0])
-                                          : 0.0;
-            if (motion == MPM_MOTION_FREE && dim == 3) continue; /* turns about all axes */
-            ck_within("tied", of_nodes[k * n + i], v[k] + turns, 1e-6);
-          }
-        }
-        free(gap), free(of_nodes), free(x);
+        if (motion != MPM_MOTION_FREE || dim < 3) moves_with(&w, o, 1e-6); /* there it turns about all axes */
       }
       if (kind == MPM_CONTACT_NONE)
         ck_within("none", w.info.momentum[down], start.momentum[down], 1e-12 * fabs(start.momentum[down]));
       drop_obstacle(&w, o);
       world_close(&w);
     }
+}
+END_TEST
+
+/* A plane that weighs a hundredth of the box on it, whose nodes move at unlike speeds. */
+START_TEST(light) {
+  world w;
+  open_arena(&w, &(arena){.dim = 2, .method = methods[1]});
+  mpm_particles *set = w.set[0];
+  const int64_t n = mpm_particles_count(set);
+  double *x = fetch(&w, set, "position", 2), *v = fetch(&w, set, "velocity", 2), mass = 0.0;
+  double *m = fetch(&w, set, "mass", 1);
+  for (int64_t p = 0; p < n; ++p) {
+    v[n + p] *= 1.0 + 0.5 * sin(8.0 * x[p]);
+    mass += m[p];
+  }
+  put(&w, set, "velocity", 2, v);
+  free(x), free(v), free(m);
+  mpm_obstacle_desc d = obstacle_of(&(meeting){MPM_SHAPE_PLANE, 0, MPM_MOTION_FREE}, 2);
+  mpm_contact_desc rule = rule_with(0.0);
+  rule.kind = MPM_CONTACT_TIED;
+  d.contact = &rule;
+  d.mass = 1e-2 * mass;
+  d.inertia[8] = 0.1 * d.mass;
+  mpm_obstacle *o = put_obstacle(&w, &d);
+  world_step(&w, arena_dt);
+  ck_assert_int_gt(touch_of(&w, o).stuck, 4);
+  moves_with(&w, o, 1e-9);
+  drop_obstacle(&w, o);
+  world_close(&w);
 }
 END_TEST
 
@@ -731,6 +764,7 @@ Suite *obstacles_suite(void) {
   tcase_add_loop_test(law, momentum_and_energy, 0, BROAD);
   tcase_add_loop_test(law, friction_and_work, 0, METHODS);
   tcase_add_loop_test(law, kinds_of_contact, 1, 4);
+  tcase_add_test(motion, light);
   tcase_add_loop_test(law, adhesion_and_offset, 1, 4);
   tcase_add_loop_test(same, walls_are_planes, 0, BROAD);
   tcase_add_loop_test(same, squeezed, 0, 2);

@@ -87,8 +87,8 @@ static void disc(const floor_kind *kind, int32_t motion, FILE *table) {
                    error[0][slower] / error[1][slower], 1.6, HUGE_VAL, "it converges; set tolerance");
 }
 
-/* Let go at the touch, the disc swings on its contact, slips where it is lightest, and its spin is not that of
- * a rigid one on any grid. Settled by the weight across the slope it rolls from the first. */
+/* Let go at the touch, the disc swings on its contact, slips where it is lightest, and its spin is not that
+ * of a rigid one on any grid. Settled by the weight across the slope it rolls from the first. */
 static void settled_disc(const floor_kind *kind, FILE *table) {
   static const double places[2] = {0.1, 0.6}, h[3] = {0.04, 0.02, 0.01};
   const double a = slide_gravity * sin(angle) / 1.5, exact[2] = {0.5 * a * end * end, a * end / radius};

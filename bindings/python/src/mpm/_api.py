@@ -310,7 +310,8 @@ class Contact(IntEnum):
 
 
 class Normal(IntEnum):
-    """How the normal at a node is found: mpm_contact_desc.normal."""
+    """How the normal at a node is found: mpm_contact_desc.normal. One plane parts two bodies at a node: what is
+    thinner than two cells and lies between two faces of one other body is gripped by it."""
 
     #: of the plane that separates the particles best: logistic regression
     NORMAL_LOGISTIC = 0
@@ -381,9 +382,10 @@ class Adapt(IntEnum):
 class Conduction(IntEnum):
     """How the nodes conduct."""
 
-    #: By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused with
-    #: MPM_CUT_DT, and mpm_stable_dt() takes the bound into account. So are steps in which a film of
-    #: mpm_surface_set_heat() would take more from a particle than its difference to the ambient, of which
+    #: By the temperatures at the start of the step. Steps longer than 1 / (2 diffusivity sum 1 / h_k^2), h_k the
+    #: spacings, are refused with MPM_CUT_DT, and mpm_stable_dt() takes the bound into account; with
+    #: total_lagrangian = 1 spacings are those that the deformation has made of them. So are steps in which a film
+    #: of mpm_surface_set_heat() would take more from a particle than its difference to the ambient, of which
     #: mpm_stable_dt() knows nothing.
     CONDUCTION_EXPLICIT = 0
     #: By those at its end (backward Euler), found by conjugate gradients: any step will do.

@@ -338,10 +338,10 @@ pub mod constants {
 
     // How the nodes conduct.
 
-    /// By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused with
-    /// MPM_CUT_DT, and mpm_stable_dt() takes the bound into account. So are steps in which a film of
-    /// mpm_surface_set_heat() would take more from a particle than its difference to the ambient, of which
-    /// mpm_stable_dt() knows nothing.
+    /// By the temperatures at the start of the step. Steps longer than 1 / (2 diffusivity sum 1 / h_k^2), h_k the
+    /// spacings, are refused with MPM_CUT_DT, and mpm_stable_dt() takes the bound into account; with total_lagrangian = 1
+    /// spacings are those that the deformation has made of them. So are steps in which a film of mpm_surface_set_heat()
+    /// would take more from a particle than its difference to the ambient, of which mpm_stable_dt() knows nothing.
     pub const MPM_CONDUCTION_EXPLICIT: i32 = 0;
     /// By those at its end (backward Euler), found by conjugate gradients: any step will do.
     pub const MPM_CONDUCTION_IMPLICIT: i32 = 1;
@@ -1601,8 +1601,8 @@ pub struct mpm_distance_batch {
     pub t: f64,
     /// [dim][ld]
     pub position: *const f64,
-    /// [ld] to be set: signed distance, > 0 outside. It must be right up to two spacings off the surface, and no larger
-    /// than it is farther out
+    /// [ld] to be set: signed distance, > 0 outside. It must be right up to two spacings, and the offset of the
+    /// obstacle's rule, off the surface, and no larger than it is farther out
     pub distance: *mut f64,
     /// [dim][ld] to be set: unit gradient of the distance
     pub normal: *mut f64,
