@@ -407,7 +407,7 @@ mpm_status mpmi_clouds_fill(mpmi_contact_search *search) {
     contact->entry_count += contact->cloud[i].count;
     contact->cloud[i].count = 0;
   }
-  status = MPMI_RESERVE_MORE(c, contact->entry, contact->entry_capacity, contact->entry_count);
+  status = MPMI_RESERVE_MORE(c, contact->entry, contact->entry_capacity, contact->entry_count + AHEAD);
   job.fill = 1;
   if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, visit_task, &job);
   const int32_t unused = 3 - search->step->layout->blocks.grid->dim;
