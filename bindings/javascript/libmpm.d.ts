@@ -1044,7 +1044,7 @@ export interface DistanceBatch {
   readonly position: Float64Array[];
   /**
    * [ld] to be set: signed distance, > 0 outside. It must be right up to two spacings, and the offset of the
-   * obstacle's rule, off the surface, and no larger than it is farther out
+   * obstacle's rule, off the surface; farther out it may be smaller than it is, but not than that
    */
   readonly distance: Float64Array;
   /** [dim][ld] to be set: unit gradient of the distance */

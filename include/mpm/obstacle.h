@@ -52,8 +52,8 @@ typedef struct mpm_distance_batch {
   double t;               /**< time at the start of the step */
   const double *position; /**< [dim][ld] */
   double *distance;       /**< [ld] to be set: signed distance, > 0 outside. It must be right up to two
-                               spacings, and the offset of the obstacle's rule, off the surface,
-                               and no larger than it is farther out */
+                               spacings, and the offset of the obstacle's rule, off the surface;
+                               farther out it may be smaller than it is, but not than that */
   double *normal;         /**< [dim][ld] to be set: unit gradient of the distance */
   double *velocity;       /**< [dim][ld] preset to 0: of the surface there, beside the rigid motion. NULL for
                                points at which it is not asked for */

@@ -11,7 +11,7 @@
 
 /* Touches of one meeting are swept until what is left is this share of the first sweep. */
 static const double settled = 1e-13;
-enum { SWEEPS = 30, SWEEPS_OF_FREE = 1000 }; /* a light obstacle on heavy nodes takes hundreds */
+enum { SWEEPS = 30, SWEEPS_OF_FREE = 1000 }; /* 30 are too few for a light obstacle on heavy nodes */
 
 /* ---- parties ------------------------------------------------------------------------------------------- */
 /* A surface counts by itself where it is free, and has no mass of its own else. */

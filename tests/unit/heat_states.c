@@ -273,12 +273,17 @@ START_TEST(nothing_is_free) {
 }
 END_TEST
 
+static mpm_particles *open_cube(world *w) {
+  const world_desc desc = world_default(2, 8, 0.25);
+  mpm_particles *set = world_open(w, &desc);
+  world_fill_cube(w, set, 0.5, 1.0);
+  return set;
+}
+
 /* Without a description nothing is there; with one that is taken back fields stay. */
 START_TEST(comes_and_goes) {
   world w;
-  const world_desc desc = world_default(2, 8, 0.25);
-  mpm_particles *set = world_open(&w, &desc);
-  world_fill_cube(&w, set, 0.5, 1.0);
+  mpm_particles *set = open_cube(&w);
   mpm_heat_desc d = heat_desc(2.0, 1.0);
   d.reference_temperature = 12.0;
   ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &d));
@@ -304,9 +309,7 @@ END_TEST
 /* What the last step gave is nothing once no set has heat; totals stay. */
 START_TEST(last_step_without_heat) {
   world w;
-  const world_desc desc = world_default(2, 8, 0.25);
-  mpm_particles *set = world_open(&w, &desc);
-  world_fill_cube(&w, set, 0.5, 1.0);
+  mpm_particles *set = open_cube(&w);
   mpm_heat_desc d = heat_desc(2.0, 1.0);
   d.source = warm_middle;
   ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &d));

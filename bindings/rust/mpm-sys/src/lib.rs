@@ -1602,7 +1602,7 @@ pub struct mpm_distance_batch {
     /// [dim][ld]
     pub position: *const f64,
     /// [ld] to be set: signed distance, > 0 outside. It must be right up to two spacings, and the offset of the
-    /// obstacle's rule, off the surface, and no larger than it is farther out
+    /// obstacle's rule, off the surface; farther out it may be smaller than it is, but not than that
     pub distance: *mut f64,
     /// [dim][ld] to be set: unit gradient of the distance
     pub normal: *mut f64,
