@@ -152,6 +152,7 @@ def contact_discs():
     for basis in ("quadratic", "cubic"):
         spins = {c: -s / rigid for c, n, s in zip(table["case"], table["cells"], table["spin"]) if n == 40}
         ax[3].plot(["0", "0.3", "10"], [spins[f"oblique with friction {f} ({basis})"] for f in ("0", "0.3", "10")], "o", label=basis)
+    ax[3].plot(["0.3", "10"], [0.4475 / rigid, 0.3783 / rigid], "k+", markersize=9, label="FEM")
     ax[3].set_xlabel("friction")
     ax[3].set_ylabel("spin / that of rigid discs that stick")
     ax[3].legend()
