@@ -42,6 +42,30 @@ static void refine(FILE *history, FILE *table) {
                 "first order");
 }
 
+/* The outline of shells is that of the disc along the axes of their square, and nearly so elsewhere. */
+static void smooth(FILE *table) {
+  disc_hit a = {.scheme = MPM_MUSL, .transfer = MPM_FLIP, .basis = MPM_BSPLINE2, .shells = 1};
+  for (int k = 0; k < (verify_quick() ? 1 : 3); ++k) {
+    char name[80];
+    a.cells = 40 << k;
+    const disc_outcome o = disc_collide(&a, NULL);
+    snprintf(name, sizeof name, "smooth outline, h = 1/%d", a.cells);
+    show("shells", &a, &o, table);
+    keeps_laws(name, &o);
+    verify_gate_of(name, "they touch (1.586)", o.touch, 1.576, 1.596, disc_reference);
+    const double least = 0.909 - (k ? 0.02 : 0.045);
+    if (k != 1) {
+      verify_gate_of(name, "rebound / speed (FEM 0.909)", o.rebound, least, 0.919, disc_reference);
+      continue;
+    }
+    char what[120];
+    snprintf(what, sizeof what, "%s: rebound / speed (FEM 0.909)", name);
+    verify_expected_failure(
+        what, o.rebound, least, 0.919, disc_reference,
+        "the gate is that of the lattice turned by 45 degrees; the rebound depends on place and turn");
+  }
+}
+
 static void turn(FILE *table) {
   disc_hit a = {
       .cells = 40, .scheme = MPM_MUSL, .transfer = MPM_FLIP, .basis = MPM_BSPLINE2, .angle = 0.25 * PI};
@@ -136,6 +160,7 @@ int main(int argc, char **argv) {
       table,
       "case,cells,touch,part,least,when,rebound,energy,energy_end,momentum,angular,spin,force,dissipation\n");
   refine(history, table);
+  smooth(table);
   turn(table);
   oblique(table);
   implicit(table);

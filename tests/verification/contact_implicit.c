@@ -109,6 +109,7 @@ static press look(pressing *on, const char *name, double deep, FILE *table) {
 /* Deep: by how much each plane comes nearer in a second. */
 static void open_press(pressing *on, int32_t cells, int32_t scheme, double deep) {
   const double h = on->h = R / cells, by[2] = {0.0, on->place = 0.3 * R / cells};
+  const double centre[2] = {0.0, R + by[1]}, rest[2] = {0.0, 0.0};
   verify_setup setup = verify_defaults(2, cells + 4, h);
   setup.grid.cells[1] = 2 * cells + 8;
   setup.grid.origin[1] = -4.0 * h;
@@ -116,7 +117,7 @@ static void open_press(pressing *on, int32_t cells, int32_t scheme, double deep)
   setup.stepper.quasi_static = scheme == MPM_NEWMARK;
   verify_open(&on->w, &setup);
   mpm_particles *body = verify_set(&on->w, verify_elastic(&on->w, "neo_hookean", E, nu, 1000.0));
-  disc_fill_shells(&on->w, body, R, R + by[1], 0.5 * h);
+  disc_fill_shells(&on->w, body, centre, R, rest, 1, 0.5 * h);
   verify_ok(&on->w, mpm_stepper_set_wall(on->w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
   mpm_contact_desc rule;
   mpm_obstacle_desc plane = verify_obstacle_defaults(&rule, MPM_SHAPE_PLANE, MPM_MOTION_PRESCRIBED, 0.0, 0.0);

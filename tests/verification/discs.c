@@ -28,21 +28,21 @@ void disc_fill(const verify_world *w, mpm_particles *set, const double *centre, 
   free(volume);
 }
 
-void disc_fill_shells(const verify_world *w, mpm_particles *set, double radius, double height,
-                      double spacing) {
-  const int32_t n = (int32_t)floor(radius / spacing + 0.5);
-  const int64_t count = 2LL * n * n;
+void disc_fill_shells(const verify_world *w, mpm_particles *set, const double *centre, double radius,
+                      const double *v, int32_t half, double spacing) {
+  const int32_t n = (int32_t)floor(radius / spacing + 0.5), first = half ? 0 : -n;
+  const int64_t count = 2LL * n * (n - first);
   double *x = verify_array(2 * count), *volume = verify_array(count);
   int64_t at = 0;
-  for (int32_t i = 0; i < n; ++i)
+  for (int32_t i = first; i < n; ++i)
     for (int32_t j = -n; j < n; ++j, ++at) {
       const double p[2] = {(i + 0.5) * spacing, (j + 0.5) * spacing};
-      const double share = fmax(p[0], fabs(p[1])) / hypot(p[0], p[1]);
-      x[at] = share * p[0];
-      x[count + at] = share * p[1] + height;
+      const double share = fmax(fabs(p[0]), fabs(p[1])) / hypot(p[0], p[1]);
+      for (int c = 0; c < 2; ++c) x[c * count + at] = centre[c] + share * p[c];
       volume[at] = share * spacing * share * spacing;
     }
   verify_ok(w, mpm_particles_add(set, count, x, NULL, volume, NULL, NULL, NULL));
+  verify_ok(w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
   free(x);
   free(volume);
 }
@@ -107,7 +107,10 @@ disc_outcome disc_collide(const disc_hit *a, FILE *history) {
       v[c] = -sign * speed * e[c];
     }
     mpm_particles *disc = verify_set(&w, verify_elastic(&w, "neo_hookean", 1000.0, 0.3, 1000.0));
-    disc_fill(&w, disc, centre, R, v, 0.5 * h);
+    if (a->shells)
+      disc_fill_shells(&w, disc, centre, R, v, 0, 0.5 * h);
+    else
+      disc_fill(&w, disc, centre, R, v, 0.5 * h);
     verify_ok(&w, mpm_stepper_set_body(w.stepper, disc, i));
   }
   if (a->rigid) lay_rigid_body(&w, a, h);

@@ -10,16 +10,17 @@
 /* Fills a disc by its own lattice, so that it is symmetric wherever it lies on the grid. */
 void disc_fill(const verify_world *w, mpm_particles *set, const double *centre, double radius,
                const double *v, double spacing);
-/* Fills the half of a disc beyond x = 0, its centre at (0, height), by shells: a lattice of its bounding
- * square, drawn in along rays, so that its outline is smooth. */
-void disc_fill_shells(const verify_world *w, mpm_particles *set, double radius, double height,
-                      double spacing);
+/* Fills a disc by shells: a lattice of its bounding square, drawn in along rays, so that its outline is
+ * smooth. half: only what is beyond its centre along x. */
+void disc_fill_shells(const verify_world *w, mpm_particles *set, const double *centre, double radius,
+                      const double *v, int32_t half, double spacing);
 /* Angular velocity about the centre of mass, and along `e` the velocity of it. */
 double disc_spin(const verify_world *w, const mpm_particles *set, const double *e, double *velocity);
 
 typedef struct disc_hit {
   int against, cells, scheme, transfer, basis; /* against: ON_BODY is another disc, */
   int rigid;                                   /* or with 1 one of prescribed particles with a plane face */
+  int shells;                                  /* 1: filled by shells, else by lattices */
   double cfl;                                  /* of the stable step; 0: 0.4 */
   double shift[2], angle, offset, friction; /* shift: in cells; angle: of the flight, -90 degrees to a wall;
                                                   offset: of the lines of flight, in radii */

@@ -43,7 +43,8 @@ static outcome rest(const setting *by, int32_t on, int32_t per_cell, int32_t ste
   verify_world w;
   verify_open(&w, &setup);
   mpm_particles *disc = verify_set(&w, verify_elastic(&w, "neo_hookean", E, nu, 1.0));
-  disc_fill_shells(&w, disc, R, floor + R, h / per_cell);
+  const double centre[2] = {0.0, floor + R}, rest[2] = {0.0, 0.0};
+  disc_fill_shells(&w, disc, centre, R, rest, 1, h / per_cell);
   verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
   if (on == ON_BODY) {
     mpm_particles *ground = verify_set(&w, w.material[0]);
