@@ -18,6 +18,7 @@ typedef struct mpmi_bound {
   /* weight of this projection's impulses: the share of its velocities that particles take */
   double share;
   int32_t dim, records; /* records: impulses count as reactions */
+  int32_t loads;        /* surfaces have given forces to the nodes */
 } mpmi_bound;
 
 /* Who holds a component of a node, in held[][]. */
@@ -67,6 +68,10 @@ static inline mpmi_component mpmi_component_of(const mpmi_bound *bound, int64_t 
 void mpmi_note_impulse(mpmi_bound *bound, int64_t slot, int32_t c, double impulse, double change);
 /* Records how much more a free node now gives to particles, and returns it: the impulse. */
 double mpmi_record(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before);
+/* Returns the work of what has changed a component of a free node that goes with `velocity`. Mirror images go
+ * the other way and take an impulse the other way: all mass of the tie counts. */
+double mpmi_work_done(const mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before,
+                      double velocity);
 /* Changes a component of v~ and dv of a free node with its tie by what no boundary gives, and returns what
  * particles take of that, by mass. */
 double mpmi_shift_node(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, double increment);

@@ -76,7 +76,8 @@ mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projectio
                       .flip = both ? mpmi_flip_share(step) : 0.0,
                       .share = share,
                       .dim = settings->grid->dim,
-                      .records = projection->recorded && nodes->has_impulses};
+                      .records = projection->recorded && nodes->has_impulses,
+                      .loads = projection->forces && settings->surfaces.count > 0};
   mpm_status status = mpmi_ties_fold(&bound);
   if (!status && projection->contact != MPMI_CONTACT_NONE) mpmi_light_nodes_lead(&bound);
   if (!status) status = projection->main ? act(&bound, projection) : act_on_velocities(&bound, projection);

@@ -13,7 +13,6 @@ static void prescribe(mpmi_bound *bound, int64_t slot, int32_t c, double value) 
   v[c] = value;
 }
 
-/* The work is the impulse times the velocity that the step has. */
 static void set_block(mpmi_bound *bound, int64_t block, mpmi_whole_sum *sum) {
   const mpmi_nodes *nodes = bound->nodes;
   const int64_t first = block * bound->step->layout->blocks.nodes;
@@ -23,9 +22,9 @@ static void set_block(mpmi_bound *bound, int64_t block, mpmi_whole_sum *sum) {
       const double value = nodes->held_value[slot][c];
       const mpmi_component before = mpmi_component_of(bound, slot, c);
       prescribe(bound, slot, c, value);
-      const double work = mpmi_record(bound, slot, c, before) * value;
+      mpmi_record(bound, slot, c, before);
       if (bound->records && mpmi_owns_node(bound->step->layout->parts, slot))
-        mpmi_exact_add(sum, bound->share * work);
+        mpmi_exact_add(sum, bound->share * mpmi_work_done(bound, slot, c, before, value));
     }
 }
 

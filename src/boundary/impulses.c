@@ -27,6 +27,11 @@ double mpmi_record(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component be
   return record(bound, slot, c, before, 0);
 }
 
+double mpmi_work_done(const mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before,
+                      double velocity) {
+  return mpmi_moving_mass(bound, slot) * (mpmi_given(bound, slot, c) - before.given) * velocity;
+}
+
 double mpmi_press_node(mpmi_bound *bound, int64_t slot, int32_t c, double by) {
   const mpmi_component before = mpmi_component_of(bound, slot, c);
   mpmi_velocity(bound->values, slot)[c] += by;

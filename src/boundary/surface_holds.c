@@ -100,7 +100,8 @@ static void slide(mpmi_bound *bound, mpmi_surface_site *site) {
     if (!bound->records) continue;
     site->impulse[c] += bound->share * impulse;
     if (mpmi_owns_node(bound->step->layout->parts, site->slot))
-      mpmi_exact_add(&bound->step->work->tally.sum[MPMI_TALLY_WORK], bound->share * impulse * v[c]);
+      mpmi_exact_add(&bound->step->work->tally.sum[MPMI_TALLY_WORK],
+                     bound->share * mpmi_work_done(bound, site->slot, c, before[c], v[c]));
   }
 }
 

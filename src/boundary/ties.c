@@ -127,6 +127,7 @@ static void unfold(mpmi_bound *bound, int64_t begin, int64_t end) {
     for (int32_t c = 0; c < bound->dim; ++c) {
       double total =
           *mpmi_mass(bound->values, tie->master) * (mpmi_given(bound, tie->master, c) - state->before[c]);
+      if (bound->loads) total += bound->step->velocity_dt * state->mirrored[c];
       mpmi_note_impulse(bound, tie->master, c, total,
                         mpmi_increment_of(bound, tie->master, c) - state->increment[c]);
       for (int64_t d = tie->first; d < tie->first + tie->count; ++d)

@@ -132,7 +132,7 @@ mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mp
   if (status) return status;
   status = mpmi_accumulate(step, &(mpmi_accumulation){.to = job.to, .give = scatter_block, .user = &job});
   if (!status) status = mpmi_step_failure(step);
-  if (!status && projection->forces) status = mpmi_surfaces_give(step, job.to);
+  if (!status && projection->forces) status = mpmi_surfaces_give(step, nodes);
   if (!status && !projection->forces && mpmi_asks_host(step->settings, projection) &&
       !mpmi_is_implicit(step->settings) && mpmi_surfaces_prescribe(&step->settings->surfaces))
     status = mpmi_surfaces_find(step, job.to); /* USF: the boundary stage needs the nodes around markers */

@@ -92,7 +92,7 @@ mpm_status mpmi_surfaces_load(mpmi_step *step, double t);
  * parts each knows of some. */
 mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses);
 /* Does the same, and adds the forces to the sums that particles have made there. */
-mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to);
+mpm_status mpmi_surfaces_give(mpmi_step *step, mpmi_nodes *nodes);
 /* Returns the first of the nodes around a marker that take something, or -1. */
 int64_t mpmi_marker_first_slot(const mpm_surface *surface, int64_t marker);
 /* Returns 1 on the one part that tells the others of a marker, after mpmi_surfaces_find(): it owns that

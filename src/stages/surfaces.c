@@ -150,7 +150,8 @@ typedef struct surface_job {
   mpmi_step *step;
   mpm_surface *surface;
   const mpmi_nodal *nodes;
-  int32_t told; /* of several parts: the velocities are those that parts have told */
+  mpmi_tie_state *states; /* where it gives */
+  int32_t told;           /* of several parts: the velocities are those that parts have told */
 } surface_job;
 
 /* ---- forces on nodes ----------------------------------------------------------------------------------- */
@@ -171,13 +172,16 @@ static int64_t heaviest_of(const surface_job *job, const mpmi_tie *tie) {
   return best;
 }
 
-/* Gives a force to a node: in its sum of forces, or in its momentum where these are not apart. */
+/* Gives a force to a node: in its sum of forces, or in its momentum where these are not apart. What mirror
+ * images turn round is the wall's. */
 static void give_node(const surface_job *job, int64_t slot, const double *force, double weight) {
   const mpmi_constraints *ties = &job->step->layout->constraints;
   const mpmi_tie *tie = ties->tie_of[slot] < 0 ? NULL : &ties->tie[ties->tie_of[slot]];
   const int64_t to = tie ? heaviest_of(job, tie) : slot;
   for (int32_t c = 0; c < job->step->settings->grid->dim; ++c) {
-    const double sign = to == slot ? 1.0 : sign_of(ties, tie, slot, c) * sign_of(ties, tie, to, c);
+    const double its_sign = tie ? sign_of(ties, tie, slot, c) : 1.0;
+    const double sign = to == slot ? 1.0 : its_sign * sign_of(ties, tie, to, c);
+    if (tie) job->states[ties->tie_of[slot]].mirrored[c] += (its_sign - 1.0) * weight * force[c];
     if (mpmi_has_increments(job->nodes))
       mpmi_increment(job->nodes, to)[c] += sign * weight * force[c];
     else
@@ -221,11 +225,13 @@ mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses) {
   return status;
 }
 
-mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to) {
+mpm_status mpmi_surfaces_give(mpmi_step *step, mpmi_nodes *nodes) {
   const mpmi_surfaces *list = &step->settings->surfaces;
-  const mpm_status status = mpmi_surfaces_find(step, to);
+  const mpm_status status = mpmi_surfaces_find(step, &nodes->solved);
+  for (int64_t t = 0; t < step->layout->constraints.tie_count && list->count; ++t)
+    for (int32_t c = 0; c < 3; ++c) nodes->tie_state[t].mirrored[c] = 0.0;
   for (int64_t i = 0; i < list->count && !status; ++i) {
-    const surface_job job = {step, list->surface[i], to, 0};
+    const surface_job job = {step, list->surface[i], &nodes->solved, nodes->tie_state, 0};
     give_surface(&job);
   }
   return status;
@@ -345,7 +351,7 @@ static mpm_status tell(mpmi_step *step, const mpmi_nodal *from, int32_t meets) {
   const mpmi_settings *settings = step->settings;
   mpm_status status = MPM_OK;
   for (int64_t i = 0; i < settings->surfaces.count && !status; ++i) {
-    surface_job job = {step, settings->surfaces.surface[i], from, 0};
+    surface_job job = {step, settings->surfaces.surface[i], from, NULL, 0};
     mpm_surface *s = job.surface;
     if (!s->next.count) continue;
     if (meets && (status = tell_velocities(&job))) return status;
@@ -388,7 +394,7 @@ mpm_status mpmi_surfaces_stretch(mpmi_step *step, const mpmi_nodal *from) {
   const mpmi_settings *settings = step->settings;
   mpm_status status = MPM_OK;
   for (int64_t i = 0; i < settings->surfaces.count && !status; ++i) {
-    surface_job job = {step, settings->surfaces.surface[i], from, 0};
+    surface_job job = {step, settings->surfaces.surface[i], from, NULL, 0};
     status = mpmi_run_tasks(settings, 0, settings->tasks, stretch_task, &job);
     if (!status) status = load_surface(step, job.surface);
   }
@@ -471,7 +477,7 @@ mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from, int32_t m
   const mpmi_surfaces *list = &step->settings->surfaces;
   mpm_status status = step->layout->parts ? tell(step, from, meets) : MPM_OK;
   for (int64_t i = 0; i < list->count && !status; ++i) {
-    surface_job job = {step, list->surface[i], from, 0};
+    surface_job job = {step, list->surface[i], from, NULL, 0};
     status = move_surface(&job);
   }
   return status;

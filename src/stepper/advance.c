@@ -93,19 +93,24 @@ typedef struct leaves {
   double end; /* the earliest at which one of them would have ended */
 } leaves;
 
-/* Returns 1 where a smaller dt may help. What leaves the grid in an implicit step may only have come to a
+/* Returns 1 where causes of this kind are answered by a smaller dt. */
+static int32_t is_cut(const mpm_stepper *s, mpm_status status) {
+  return (status >= MPM_CUT_DT && status <= MPM_SINGULAR) ||
+         (status == MPM_OFF_GRID && mpmi_is_implicit(&s->settings));
+}
+
+/* Returns 1 where this one may be answered so. What leaves the grid in an implicit step may only have come to a
  * balance far away, or through a touch that stayed open. What moves out by itself is out at the end of all
  * these steps, and so the time does not come to the end of any. */
 static int32_t a_cut_may_help(const mpm_stepper *s, mpm_status status, double dt, leaves *left) {
-  if (status == MPM_OFF_GRID && mpmi_is_implicit(&s->settings)) {
+  if (status == MPM_OFF_GRID) {
     const double end = s->history.t + dt;
     if (s->history.t >= left->end) *left = (leaves){0, end};
     left->end = fmin(left->end, end);
     return left->count++ < MOST_LEAVES;
   }
   /* the first matrix of a quasi-static step does not depend on dt */
-  if (status == MPM_SINGULAR && s->settings.desc.quasi_static) return s->history.last.newton_iterations > 1;
-  return status >= MPM_CUT_DT && status <= MPM_SINGULAR;
+  return status != MPM_SINGULAR || !s->settings.desc.quasi_static || s->history.last.newton_iterations > 1;
 }
 
 /* The next call starts from the dt that was cut first. */
@@ -139,13 +144,13 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
       cuts = 0;
       continue;
     }
+    if (!is_cut(s, status)) return status;
     if (!cuts) first = dt;
     const double smaller = CUT * dt;
     /* cutting ends where numbers lose digits: the smallest would be cut to itself */
-    if (!a_cut_may_help(s, status, dt, &left) || smaller < d->dt_min || smaller < DBL_MIN ||
+    if (!a_cut_may_help(s, status, dt, &left) || cuts == most || smaller < d->dt_min || smaller < DBL_MIN ||
         s->history.t + smaller == s->history.t)
-      return status;
-    if (cuts == most) return give_up(s, status, cuts, first, dt);
+      return cuts ? give_up(s, status, cuts, first, dt) : status;
     ++cuts;
     s->history.controller_dt = smaller;
   }

@@ -281,6 +281,29 @@ START_TEST(cuts_end) {
 }
 END_TEST
 
+/* Late in time cutting ends where it no longer moves the clock. The next call starts where this one did, too,
+ * and so does one that meets its least dt. */
+START_TEST(cuts_end_at_the_clock) {
+  ck_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
+  for (int32_t k = 0; k < 2; ++k) {
+    const double start = k ? 0.0 : 100.0, *tried = strict.tried;
+    ck_ok(&r, mpm_stepper_set_time(r.stepper, start, 0));
+    d.t_end = start + 1.0;
+    d.dt_min = k ? 1e-5 : 0.0;
+    double first = 0.0;
+    for (int32_t again = 0; again < 2; ++again) {
+      strict.n = 0;
+      ck_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_CUT_DT, "gave up after");
+      ck_assert(strstr(last_error_of(&r), "the force callback"));
+      ck_assert_int_gt(strict.n, 5);
+      ck_assert_int_lt(strict.n, 61);
+      if (again) ck_assert_double_eq(tried[0], first);
+      first = tried[0];
+    }
+  }
+}
+END_TEST
+
 /* A clock that the stable step does not move is an error, not a jump to the end. */
 START_TEST(steps_too_small_for_the_clock) {
   ck_ok(&r, mpm_stepper_set_time(r.stepper, 1e18, 3));
@@ -355,6 +378,7 @@ TCase *stepper_advance_case(void) {
   tcase_add_test(tests, runs_out_of_steps);
   tcase_add_test(tests, cuts);
   tcase_add_test(tests, not_below_dt_min);
+  tcase_add_test(tests, cuts_end_at_the_clock);
   tcase_add_test(tests, cuts_end);
   tcase_add_test(tests, steps_too_small_for_the_clock);
   tcase_add_test(tests, not_curable);

@@ -67,6 +67,37 @@ START_TEST(tractions_keep_force_and_moment) {
 }
 END_TEST
 
+/* Beside a wall that mirrors, surfaces and the wall together give the body what it gains: mirror images turn
+ * a part of the load round, which is the wall's, or that of whoever holds the nodes. */
+START_TEST(loads_beside_walls) {
+  const method *how = broad_methods[_i];
+  static const int32_t kind[] = {MPM_WALL_SLIP, MPM_WALL_FIXED};
+  for (int32_t dim = 1; dim <= 3 && is_explicit(how); ++dim)
+    for (int32_t k = 0; k < 2 && !(dim == 1 && how->remedy); ++k) {
+      world w;
+      const world_desc desc = world_with(how, dim, CELLS, spacing);
+      mpm_particles *set = world_open(&w, &desc);
+      const double low[] = {0.0, 0.85, 0.9}, high[] = {1.2, 2.1, 2.15};
+      world_fill(&w, set, low, high, 2);
+      ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, kind[k], 0.0));
+      mpm_surface_desc d = load_desc();
+      for (int32_t c = 0; c < 3; ++c) d.traction[c] = 300.0 - 200.0 * c;
+      mpm_surface *s = put_surface(&w, &d);
+      const double x[3] = {0.1, 1.5, 1.6}, a[3] = {0.04, 0.01, 0.02}, dt = 1e-4;
+      ck_ok(&w, mpm_surface_add(s, 1, x, a, NULL));
+      const mpm_step_info info = world_step(&w, dt);
+      double *f = markers(s, "force", dim), wall[3] = {0.0};
+      ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_X_MIN, wall));
+      for (int32_t c = 0; c < dim; ++c)
+        ck_within(how->name, info.momentum[c], dt * (f[c] + wall[c]), 1e-11 * dt * fabs(f[c]));
+      ck_assert_double_lt(wall[0], -1e-3 * fabs(f[0]));
+      free(f);
+      drop_surface(&w, s);
+      world_close(&w);
+    }
+}
+END_TEST
+
 START_TEST(buoyancy) {
   const method *how = broad_methods[_i];
   if (!is_explicit(how)) return;
@@ -136,6 +167,7 @@ Suite *surface_suite(void) {
   TCase *loads = tcase_create("loads");
   tcase_add_loop_test(loads, closed_under_pressure, 0, BROAD);
   tcase_add_loop_test(loads, tractions_keep_force_and_moment, 0, BROAD);
+  tcase_add_loop_test(loads, loads_beside_walls, 0, BROAD);
   tcase_add_loop_test(loads, buoyancy, 0, BROAD);
   tcase_add_test(loads, light_nodes_take_little);
   tcase_set_timeout(loads, 60);

@@ -141,6 +141,42 @@ START_TEST(half_on_slip_wall_in_space) {
 }
 END_TEST
 
+/* Stretches what is not on the plane. */
+static mpm_status stretch(void *user, const mpm_node_batch *b, uint8_t *prescribed, double *velocity) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i) {
+    if (fabs(b->position[i] - plane) < 0.05) continue;
+    prescribed[i] = 1;
+    velocity[i] = 0.3 * (b->position[i] - plane);
+  }
+  return MPM_OK;
+}
+
+static double work_of(const method *how, int32_t whole) {
+  world w;
+  world_desc desc = world_with(how, 2, 16, 0.1);
+  const double lower[2] = {whole ? plane - 0.4 : plane, 0.6}, upper[2] = {plane + 0.4, 1.0};
+  if (!whole) desc.grid.origin[0] = plane, desc.grid.cells[0] = 8;
+  mpm_particles *set = world_open(&w, &desc);
+  if (!whole) ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
+  world_fill(&w, set, lower, upper, 2);
+  ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, stretch, NULL));
+  for (int32_t i = 0; i < 3; ++i) world_step(&w, 1e-3);
+  const double work = world_info(&w).external_work_total;
+  world_close(&w);
+  return work;
+}
+
+/* Mirror images go the other way by an impulse the other way: who moves both halves works twice as much. */
+START_TEST(work_on_half_is_half_the_work) {
+  const method how = wall_method_of(_i);
+  if (how.scheme == MPM_NEWMARK || how.boundary == MPM_BOUNDARY_OPEN_KNOT) return;
+  const double half = work_of(&how, 0), whole = work_of(&how, 1);
+  ck_assert_double_gt(whole, 0.0);
+  ck_within(how.name, 2.0 * half, whole, 1e-10 * whole);
+}
+END_TEST
+
 TCase *walls_space_case(void) {
   TCase *tc = tcase_create("space");
   tcase_set_timeout(tc, 60.0);
@@ -154,5 +190,6 @@ TCase *walls_symmetry_case(void) {
   tcase_set_timeout(tc, 60.0);
   tcase_add_loop_test(tc, half_on_slip_wall_is_the_whole, 0, WALL_METHODS);
   tcase_add_loop_test(tc, half_on_fixed_wall_is_the_whole, 0, WALL_METHODS);
+  tcase_add_loop_test(tc, work_on_half_is_half_the_work, 0, WALL_METHODS);
   return tc;
 }

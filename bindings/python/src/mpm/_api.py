@@ -1878,10 +1878,10 @@ Steps to t_end exactly. Statuses 1..5 cut dt to 0.6 of it and try again, and suc
 is part of the saved state. In implicit steps MPM_OFF_GRID cuts as well, but no more than 20 times before the time
 comes to where one of these steps would have ended: a body that moves out by itself does so in steps of any length. On
 failure the state is that of the last committed sub-step, and the status is the cause. After max_cuts cuts in a row
-(60: dt is 5e-14 of what it was) the call gives up, and mpm_last_error() says so and why the last try failed; the host
-may call again, with the dt of before the cuts. info may be NULL; it is that of the last sub-step tried. The call
-returns MPM_OK with t < t_end when max_steps ran out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before the
-present time, or a value is bad.""",
+(60: dt is 5e-14 of what it was), or where another would go below dt_min or no longer move the time, the call gives
+up, and mpm_last_error() says so and why the last try failed; the next call begins with the dt of before the cuts.
+info may be NULL; it is that of the last sub-step tried. The call returns MPM_OK with t < t_end when max_steps ran
+out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before the present time, or a value is bad.""",
     "mpm_stepper_profile": """mpm_status mpm_stepper_profile(mpm_stepper *stepper, int32_t reset, mpm_profile *out)
 
 Copies the times into out, then sets them to zero if reset is not 0. They cost the steps one clock read per stage.""",
