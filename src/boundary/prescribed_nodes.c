@@ -15,6 +15,10 @@ typedef struct stencil {
   double w[MOST_NODES];
 } stencil;
 
+/* Weights below this are rounding of none, as where the edge of a particle's domain lies on a node: they must
+ * not decide who holds it. */
+static const double least_weight = 1e-12;
+
 static void find_stencil(const mpm_grid *grid, const mpmi_weights *W, int64_t p, stencil *to) {
   const int32_t edge = MPMI_TILE_EDGE(grid->dim, grid->width), width = grid->width;
   to->count = 1;
@@ -28,7 +32,10 @@ static void find_stencil(const mpm_grid *grid, const mpmi_weights *W, int64_t p,
       }
     to->count *= width;
   }
-  for (int32_t n = 0; n < to->count; ++n) to->at[n] += W->node[p];
+  for (int32_t n = 0; n < to->count; ++n) {
+    to->at[n] += W->node[p];
+    to->w[n] = to->w[n] > least_weight ? to->w[n] : 0.0;
+  }
 }
 
 /* Holds one member's prescribed particles in one block, with the block's tile of sums. */

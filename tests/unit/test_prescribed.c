@@ -466,6 +466,43 @@ START_TEST(light_through_heavy) {
 }
 END_TEST
 
+/* A block on a wall is pressed by a platen, whose domains end on nodes; `origin` moves all of it. */
+static double force_on_wall(int32_t basis, int32_t scheme, double origin) {
+  world w;
+  world_desc desc = world_default(2, 12, 0.1);
+  desc.grid.basis = basis;
+  desc.grid.origin[0] = origin;
+  desc.grid.periodic[1] = 1;
+  desc.sets = 2;
+  desc.stepper.scheme = scheme;
+  desc.stepper.quasi_static = scheme == MPM_NEWMARK;
+  world_open(&w, &desc);
+  const double at[] = {origin, origin + 0.5, origin + 0.7}, v[2] = {-0.01, 0.0};
+  const uint8_t all[2] = {1, 1};
+  for (int32_t m = 0; m < 2; ++m)
+    world_fill(&w, w.set[m], (const double[]){at[m], 0.0}, (const double[]){at[m + 1], 1.2}, 2);
+  ck_ok(&w, mpm_particles_set_all(w.set[1], "prescribed", MPM_U8, 2, all));
+  ck_ok(&w, mpm_particles_set_all(w.set[1], "velocity", MPM_F64, 2, v));
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
+  double force[2], dt;
+  ck_ok(&w, mpm_stable_dt(w.stepper, &dt)); /* a wave has long come to the wall */
+  for (int32_t i = 0; i < 40; ++i) world_step(&w, 0.4 * dt);
+  ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_X_MIN, force));
+  world_close(&w);
+  return force[0];
+}
+
+/* Whether rounding lets a domain reach a node or not, the platen holds the same nodes. */
+START_TEST(domains_that_end_on_nodes) {
+  static const int32_t basis[] = {MPM_GIMP, MPM_UGIMP, MPM_CPGIMP}, scheme[] = {MPM_USL, MPM_NEWMARK};
+  const double at_rest = force_on_wall(basis[_i / 2], scheme[_i % 2], 0.0);
+  ck_assert_double_gt(at_rest, 0.0);
+  for (int32_t k = 0; k < 12; ++k)
+    ck_within("force on the wall", force_on_wall(basis[_i / 2], scheme[_i % 2], 0.1 * k - 0.2), at_rest,
+              1e-8 * at_rest);
+}
+END_TEST
+
 Suite *prescribed_suite(void) {
   Suite *suite = suite_create("prescribed");
   TCase *tc = tcase_create("prescribed");
@@ -479,6 +516,7 @@ Suite *prescribed_suite(void) {
   tcase_add_loop_test(tc, nothing_to_push, 0, METHODS);
   tcase_add_loop_test(tc, work_of_moving_itself, 0, 2 * METHODS);
   tcase_add_test(tc, light_through_heavy);
+  tcase_add_loop_test(tc, domains_that_end_on_nodes, 0, 6);
   suite_add_tcase(suite, tc);
   suite_add_tcase(suite, prescribed_walls_case());
   suite_add_tcase(suite, prescribed_state_case());
