@@ -198,6 +198,7 @@ static mpm_status solve(iteration *it) {
   balance->solve_seconds += report.solve_seconds;
   balance->linear_iterations += report.iterations;
   balance->solver_used = report.solver;
+  balance->step->negative_pivots = report.negative;
   ++balance->iterations;
   if (status) {
     balance->step->failure.callback_status = report.callback_status;

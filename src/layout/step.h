@@ -96,6 +96,7 @@ typedef struct mpmi_step {
   double host_work;             /* of prescribed velocities, prescribed particles and hooks */
   int32_t is_cut;               /* where it fails, mpm_advance() makes it shorter by itself */
   int32_t whole_increments;     /* implicit: nodes give particles the whole change of their velocity */
+  int64_t negative_pivots;      /* implicit: of the last system, where a factor has told; else 0 or -1 */
   mpm_step_info info;           /* what the step reports if it is made, as far as it is known */
   /* Shows the host the info and asks whether to go on; anything but MPM_OK ends the step. */
   mpm_status (*ask_progress)(struct mpm_stepper *stepper);

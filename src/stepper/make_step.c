@@ -203,6 +203,7 @@ static mpm_status finish(mpm_stepper *s) {
   if (status) return status;
   mpmi_commit(s, &sums);
   mpmi_contact_warn(s);
+  mpmi_stability_warn(s);
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);
   mpm_step_info info = s->step.info;

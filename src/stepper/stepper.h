@@ -66,6 +66,7 @@ struct mpm_stepper {
   mpmi_step step; /* the one under way, if any */
   mpmi_history history;
   int64_t told_version, told_large; /* layout in which large particles were counted; how many there were */
+  int32_t told_unstable;            /* the last equilibrium was told not to be stable */
   mpmi_view_record view[MPMI_NODE_VIEWS];
   void *view_memory[MPMI_NODE_VIEWS];
   size_t view_bytes[MPMI_NODE_VIEWS];
@@ -186,6 +187,11 @@ void mpmi_roll_back(mpm_stepper *s);
 /* ---- contact_warnings.c ------------------------------------------------------------------------------ */
 /* Logs what is new since the last step. */
 void mpmi_contact_warn(mpm_stepper *s);
+
+/* ---- stability_warning.c ----------------------------------------------------------------------------- */
+/* Tells the host of a quasi-static step that has ended in an equilibrium that is not stable, where the step
+ * before had not. */
+void mpmi_stability_warn(mpm_stepper *s);
 
 /* ---- make_step.c ------------------------------------------------------------------------------------- */
 /* Makes a whole step, unless checks before it have come to another status than MPM_OK. is_cut: the step is

@@ -45,6 +45,53 @@ static void beside(const block *b, const mpm_step_info *info) {
               0.1 * (double)node[c], 0.15);
 }
 
+/* Counts what is logged of unstable equilibria. */
+static void hear_unstable(void *user, int32_t level, const char *text) {
+  if (level == MPM_LOG_WARNING && strstr(text, "is not stable")) ++*(int32_t *)user;
+}
+
+static mpm_status press_top(void *user, const mpm_node_batch *b, uint8_t *prescribed, double *velocity) {
+  for (int64_t i = 0; i < b->n; ++i) {
+    if (b->position[b->ld + i] < 3.99) continue;
+    prescribed[i] = prescribed[b->ld + i] = 1;
+    velocity[i] = 0.0, velocity[b->ld + i] = *(const double *)user;
+  }
+  return MPM_OK;
+}
+
+/* A straight column beyond Euler's load is in balance, but would buckle. The host is told once, and anew after
+ * it has been relieved. */
+START_TEST(column_that_would_buckle) {
+  /* 4 pi^2 E' I / L^2 = 3.5 with E' = 1000 / .91; a step of .02 adds E' A .02 / L = 1.4 */
+  enum { BEYOND_EULER = 3 };
+  const double lower[] = {0.875, 0.0}, upper[] = {1.125, 4.0};
+  double speed = -0.02;
+  int32_t told = 0;
+  world w;
+  world_desc desc = implicit_default(2, 16, 0.125, implicit_basis(2));
+  desc.grid.cells[1] = 36;
+  desc.grid.total_lagrangian = 1;
+  desc.stepper.quasi_static = 1;
+  desc.stepper.linear_solver = MPM_SOLVER_LDLT;
+  desc.law.E = 1000.0, desc.law.density = 1.0;
+  desc.context.log = hear_unstable, desc.context.log_user = &told;
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, lower, upper, 2);
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FIXED, 0.0));
+  ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, press_top, &speed));
+  for (int32_t k = 1; k <= 6; ++k) {
+    world_step(&w, 1.0);
+    ck_assert_int_eq(told, k >= BEYOND_EULER);
+  }
+  speed = 0.1;
+  world_step(&w, 1.0);
+  speed = -0.1;
+  world_step(&w, 1.0);
+  ck_assert_int_eq(told, 2);
+  world_close(&w);
+}
+END_TEST
+
 /* Nothing holds it: singular, and the node is named. With inertia it falls. */
 START_TEST(free_body) {
   block b;
@@ -573,6 +620,7 @@ TCase *implicit_failures_case(void) {
   tcase_add_test(tests, refused);
   tcase_add_test(tests, off_the_grid);
   tcase_add_test(tests, watched);
+  tcase_add_test(tests, column_that_would_buckle);
   tcase_add_test(tests, advance);
   tcase_add_test(tests, advance_within_the_grid);
   tcase_add_test(tests, advance_out_of_the_grid);
