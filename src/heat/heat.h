@@ -55,6 +55,7 @@ typedef struct mpmi_heat_part {
 /* Memory of the heat of a stepper. */
 typedef struct mpmi_heat {
   mpmi_nodal nodes, flow;
+  mpmi_wall wall[6]; /* what faces are to heat: slip walls where they prescribe a temperature, or none */
   mpmi_constraints ties;
   int64_t version, walls; /* of the layout, and of the kinds of faces, for which they were found */
   double *met;            /* [ties] of nodes on faces: the temperature that the material had there */

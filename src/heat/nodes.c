@@ -10,12 +10,12 @@ mpm_status mpmi_heat_tie(const mpmi_heat_job *job) {
   const mpmi_heat_rules *rules = &job->step->settings->heat;
   const mpm_grid *grid = job->step->settings->grid;
   mpmi_heat *heat = job->heat;
-  mpmi_wall wall[6] = {{MPM_WALL_NONE, 0.0}};
   if (heat->version == job->step->layout->version && heat->walls == rules->walls) return MPM_OK;
   for (int32_t face = 0; face < 2 * grid->dim; ++face)
-    if (rules->wall[face].kind == MPM_HEAT_WALL_TEMPERATURE) wall[face].kind = MPM_WALL_SLIP;
+    heat->wall[face].kind =
+        rules->wall[face].kind == MPM_HEAT_WALL_TEMPERATURE ? MPM_WALL_SLIP : MPM_WALL_NONE;
   heat->version = -1;
-  mpm_status status = mpmi_constraints_build(&heat->ties, &job->step->layout->blocks, wall);
+  mpm_status status = mpmi_constraints_build(&heat->ties, &job->step->layout->blocks, heat->wall);
   if (!status)
     status =
         MPMI_RESERVE_MORE(job->step->settings->context, heat->met, heat->tie_capacity, heat->ties.tie_count);

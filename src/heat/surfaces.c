@@ -69,10 +69,11 @@ mpm_status mpmi_heat_surfaces_check(const mpmi_heat_job *job) {
 
 mpm_status mpmi_heat_surfaces(const mpmi_heat_job *job) {
   const mpmi_surfaces *list = &job->step->settings->surfaces;
+  const mpmi_marker_field field = {&job->heat->nodes, &job->heat->ties, job->heat->wall};
   for (int64_t i = 0; i < list->count; ++i) {
     const mpm_surface *s = list->surface[i];
     if (!heats(s)) continue;
-    mpm_status status = mpmi_surface_find(job->step, list->surface[i], &job->heat->nodes);
+    mpm_status status = mpmi_surface_find(job->step, list->surface[i], &field);
     for (int64_t k = 0; k < s->next.count && !status; ++k) {
       const double given =
           mpmi_marker_size(&s->next.at[k], s->grid) * (s->heat.flux + s->heat.film * s->heat.ambient);

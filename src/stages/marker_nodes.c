@@ -23,11 +23,10 @@
  * few lines are left. */
 #define LEAST_SPREAD 0.25
 
-/* A surface and the nodes whose masses tell. */
 typedef struct marker_job {
   mpmi_step *step;
   mpm_surface *surface;
-  const mpmi_nodal *nodes;
+  const mpmi_marker_field *field;
 } marker_job;
 
 enum { MOST_NODES = MPMI_MAX_WIDTH * MPMI_MAX_WIDTH * MPMI_MAX_WIDTH };
@@ -56,24 +55,23 @@ static int64_t slot_of(const marker_job *job, const int64_t *index) {
 }
 
 /* Returns how many mirrored halves of a node there are at walls: one more for each on whose plane it lies. */
-static double halves_of(const mpmi_settings *settings, const int64_t *index) {
+static double halves_of(const mpmi_wall *wall, const mpm_grid *grid, const int64_t *index) {
   double halves = 1.0;
-  for (int32_t face = 0; face < 2 * settings->grid->dim; ++face)
-    if (mpmi_wall_kind_of(settings->wall[face].kind)->holds &&
-        index[face / 2] == mpmi_face_node(settings->grid, face))
+  for (int32_t face = 0; face < 2 * grid->dim; ++face)
+    if (mpmi_wall_kind_of(wall[face].kind)->holds && index[face / 2] == mpmi_face_node(grid, face))
       halves *= 2.0;
   return halves;
 }
 
-/* Returns the mass that moves with a node: that of its tie, which is not folded yet. */
-static double mass_of(const marker_job *job, int64_t slot) {
-  const mpmi_constraints *ties = &job->step->layout->constraints;
+/* Returns the mass that goes with a node: that of its tie, which is not folded yet. */
+static double mass_of(const mpmi_marker_field *field, int64_t slot) {
+  const mpmi_constraints *ties = field->ties;
   if (slot < 0) return 0.0;
-  if (ties->tie_of[slot] < 0) return *mpmi_mass(job->nodes, slot);
+  if (ties->tie_of[slot] < 0) return *mpmi_mass(field->masses, slot);
   const mpmi_tie *tie = &ties->tie[ties->tie_of[slot]];
-  double mass = *mpmi_mass(job->nodes, tie->master);
+  double mass = *mpmi_mass(field->masses, tie->master);
   for (int64_t i = tie->first; i < tie->first + tie->count; ++i)
-    mass += *mpmi_mass(job->nodes, ties->follower[i].slot);
+    mass += *mpmi_mass(field->masses, ties->follower[i].slot);
   return mass;
 }
 
@@ -116,7 +114,7 @@ static void list_nodes(const marker_job *job, const mpmi_weights *W, int64_t p, 
         if (j != k) to->g[n][k] *= W->w[j][at[j]][p];
     }
     to->slot[n] = slot_of(job, index);
-    to->mass[n] = mass_of(job, to->slot[n]) * halves_of(job->step->settings, index);
+    to->mass[n] = mass_of(job->field, to->slot[n]) * halves_of(job->field->wall, grid, index);
   }
 }
 
@@ -222,8 +220,8 @@ static void find_nodes_task(void *data, int64_t task) {
   }
 }
 
-mpm_status mpmi_surface_find(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *masses) {
-  marker_job job = {step, surface, masses};
+mpm_status mpmi_surface_find(mpmi_step *step, mpm_surface *surface, const mpmi_marker_field *field) {
+  marker_job job = {step, surface, field};
   if (!surface->next.count) return MPM_OK;
   return mpmi_run_tasks(step->settings, 0, step->settings->tasks, find_nodes_task, &job);
 }

@@ -80,8 +80,15 @@ int32_t mpmi_has_nodal_stress(const mpmi_settings *settings, const mpmi_layout *
 mpm_status mpmi_cell_pressure_stage(mpmi_step *step, mpmi_nodes *nodes, int32_t copy);
 
 /* ---- marker_nodes.c ---------------------------------------------------------------------------------- */
-/* Finds the nodes around the markers of a surface from their masses, which are not folded. */
-mpm_status mpmi_surface_find(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *masses);
+/* A field on nodes that markers give to and take from: the masses that carry it, which are not folded, which
+ * nodes go together in it, and the walls that mirror it. */
+typedef struct mpmi_marker_field {
+  const mpmi_nodal *masses;
+  const mpmi_constraints *ties;
+  const mpmi_wall *wall;
+} mpmi_marker_field;
+/* Finds the nodes around the markers of a surface that take part in a field. */
+mpm_status mpmi_surface_find(mpmi_step *step, mpm_surface *surface, const mpmi_marker_field *field);
 
 /* ---- surfaces.c -------------------------------------------------------------------------------------- */
 /* Finds what the markers of surfaces that prescribe ask for in the step. */

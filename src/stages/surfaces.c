@@ -216,10 +216,11 @@ static mpm_status check_carried(mpmi_step *step, const mpm_surface *s, const int
 
 mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses) {
   const mpmi_settings *settings = step->settings;
+  const mpmi_marker_field motion = {masses, &step->layout->constraints, settings->wall};
   mpm_status status = MPM_OK;
   for (int64_t i = 0; i < settings->surfaces.count && !status; ++i) {
     mpm_surface *surface = settings->surfaces.surface[i];
-    status = mpmi_surface_find(step, surface, masses);
+    status = mpmi_surface_find(step, surface, &motion);
     if (!status && !step->layout->parts) status = check_carried(step, surface, NULL);
   }
   return status;

@@ -401,6 +401,59 @@ START_TEST(flux_and_film) {
 }
 END_TEST
 
+/* Makes a step of a block at 300 near a wall of the motion that is insulated, with a film to 300 and a flux.
+ * Returns temperatures; the caller frees them. */
+static double *heat_near_wall(const basis_option *basis, int32_t implicit, double gap, int32_t wall,
+                              double flux) {
+  const double low[] = {gap, 0.75}, high[] = {gap + 1.25, 2.0}, at[] = {gap, gap + 1.25, 2.0, 2.0},
+               warm = 300.0, dt = 0.1;
+  world w;
+  world_desc desc = world_default(2, 12, 0.25);
+  use_basis(basis, &desc.grid);
+  desc.law.E = 1e-6;
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, low, high, 2);
+  world_walls(&w, wall, 0.0);
+  const mpm_heat_desc heat = heat_desc(2.0, 6.0);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  ck_ok(&w, mpm_particles_set_all(set, "temperature", MPM_F64, 1, &warm));
+  if (implicit) ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-14));
+  mpm_surface_desc d = load_desc();
+  mpm_surface *s = put_surface(&w, &d);
+  ck_ok(&w, mpm_surface_add_polyline(s, 2, at, 0, 0.0625, NULL, NULL));
+  ck_ok(&w, mpm_surface_set_heat(s, flux, 50.0, warm));
+  world_step(&w, dt);
+  const mpm_heat_info info = heat_told(&w);
+  const double rounding = 1e-13 * info.heat;
+  ck_within(basis->name, heat_missing(&info), 0.0, implicit ? 10.0 * rounding : rounding);
+  if (flux == 0.0 || !implicit) {
+    ck_within(basis->name, info.surfaces, 1.25 * dt * flux, 1e-12 * 1.25 * dt * (flux + 50.0 * warm));
+    ck_within(basis->name, info.gained, 1.25 * dt * flux, rounding);
+  }
+  double *T = fetch(&w, set, "temperature", 1);
+  drop_surface(&w, s);
+  world_close(&w);
+  return T;
+}
+
+/* Surfaces see what particles reach in the heat, whatever the walls of the motion mirror. */
+START_TEST(surfaces_near_insulated_walls) {
+  const basis_option *basis = &basis_options[_i % BASES];
+  const int32_t implicit = _i / BASES;
+  for (int32_t k = 0; k < 4; ++k) {
+    const double gap = k % 2 ? 0.3 * 0.25 : 0.0, flux = k / 2 ? 1e4 : 0.0;
+    double *free_there = heat_near_wall(basis, implicit, gap, MPM_WALL_NONE, flux);
+    double *slip = heat_near_wall(basis, implicit, gap, MPM_WALL_SLIP, flux);
+    double *fixed = heat_near_wall(basis, implicit, gap, MPM_WALL_FIXED, flux);
+    for (int64_t p = 0; p < 100; ++p) {
+      ck_assert(slip[p] == free_there[p] && fixed[p] == free_there[p]);
+      if (flux == 0.0) ck_within(basis->name, slip[p], 300.0, 1e-10);
+    }
+    free(free_there), free(slip), free(fixed);
+  }
+}
+END_TEST
+
 /* Explicit conduction takes no step in which a film takes more than the difference to the ambient; below that
  * the surface comes to the ambient without passing it. Implicit conduction takes both. */
 START_TEST(films_bound_the_step) {
@@ -459,6 +512,7 @@ Suite *heat_suite(void) {
   tcase_add_test(grid, parts_keep_heat);
   tcase_add_test(grid, bodies_and_sets);
   tcase_add_test(grid, flux_and_film);
+  tcase_add_loop_test(grid, surfaces_near_insulated_walls, 0, 2 * BASES);
   tcase_add_loop_test(grid, films_bound_the_step, 0, 2);
   tcase_set_timeout(grid, 120);
   suite_add_tcase(suite, grid);
