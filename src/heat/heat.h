@@ -144,7 +144,7 @@ int32_t mpmi_heat_begins(const mpmi_step *step, const mpmi_heat_history *history
 mpm_status mpmi_heat_meet(const mpmi_heat_job *job);
 /* Turns the sums of the nodes into temperatures. */
 mpm_status mpmi_heat_temperatures(const mpmi_heat_job *job);
-/* Gives prescribed nodes the change of their temperature. */
+/* Gives nodes the change of what faces prescribe: those on the plane once, mirrors twice. */
 void mpmi_heat_prescribe(const mpmi_heat_job *job);
 /* Finds the increments of the other nodes from the powers that there are. */
 mpm_status mpmi_heat_advance(const mpmi_heat_job *job);

@@ -35,13 +35,13 @@ double mpmi_heat_sign(const mpmi_follower *follower) {
   return follower->sign[0] * follower->sign[1] * follower->sign[2];
 }
 
-/* Returns what the temperature of a follower is counted from, which the sign turns: of an odd one twice the
- * prescribed temperature of the face that mirrors it. */
-static double base_of(const mpmi_heat_job *job, const mpmi_tie *tie, const mpmi_follower *follower) {
+/* Returns what a follower has beside its master's value, which the sign turns: an odd one twice the value on
+ * the plane that mirrors it. plane: by axis. */
+static double base_of(const mpmi_heat_job *job, const mpmi_follower *follower, const double *plane) {
   if (mpmi_heat_sign(follower) > 0.0) return 0.0;
   double sum = 0.0, odd = 0.0;
   for (int32_t k = 0; k < job->step->settings->grid->dim; ++k)
-    if (follower->sign[k] < 0.0) sum += job->step->settings->heat.wall[tie->face[k]].temperature, odd += 1.0;
+    if (follower->sign[k] < 0.0) sum += plane[k], odd += 1.0;
   return 2.0 * sum / odd;
 }
 
@@ -127,11 +127,13 @@ static void untied_temperatures(void *data, int64_t task) {
 static void tied_temperatures(const mpmi_heat_job *job, const mpmi_tie *tie) {
   const mpmi_constraints *ties = &job->heat->ties;
   const int32_t face = mpmi_heat_face(job, tie);
-  double *master = mpmi_heat_node(job->heat, tie->master);
+  double *master = mpmi_heat_node(job->heat, tie->master), prescribed[3] = {0.0, 0.0, 0.0};
+  for (int32_t k = 0; k < job->step->settings->grid->dim; ++k)
+    if (tie->face[k] >= 0) prescribed[k] = job->step->settings->heat.wall[tie->face[k]].temperature;
   double capacity = master[MPMI_HEAT_CAPACITY], sum = master[MPMI_HEAT_TEMPERATURE];
   for (int64_t i = tie->first; i < tie->first + tie->count; ++i) {
     const double *node = mpmi_heat_node(job->heat, ties->follower[i].slot);
-    const double base = base_of(job, tie, &ties->follower[i]);
+    const double base = base_of(job, &ties->follower[i], prescribed);
     capacity += node[MPMI_HEAT_CAPACITY];
     sum +=
         mpmi_heat_sign(&ties->follower[i]) * (node[MPMI_HEAT_TEMPERATURE] - node[MPMI_HEAT_CAPACITY] * base);
@@ -141,7 +143,7 @@ static void tied_temperatures(const mpmi_heat_job *job, const mpmi_tie *tie) {
   for (int64_t i = tie->first; i < tie->first + tie->count; ++i) {
     const mpmi_follower *f = &ties->follower[i];
     mpmi_heat_node(job->heat, f->slot)[MPMI_HEAT_TEMPERATURE] =
-        face >= 0 ? master[MPMI_HEAT_TEMPERATURE] : base_of(job, tie, f) + mpmi_heat_sign(f) * mean;
+        face >= 0 ? master[MPMI_HEAT_TEMPERATURE] : base_of(job, f, prescribed) + mpmi_heat_sign(f) * mean;
   }
 }
 
@@ -220,15 +222,39 @@ mpm_status mpmi_heat_advance(const mpmi_heat_job *job) {
   return mpmi_run_tasks(settings, 0, settings->tasks, untied_increments, (void *)(uintptr_t)job);
 }
 
+/* Returns the change of the temperature that a face prescribes, at a node on its plane. */
+static double change_at(const mpmi_heat_job *job, int32_t face, int64_t slot) {
+  const double now = job->step->settings->heat.wall[face].temperature;
+  if (job->history->acted[face] > 0.0) return now - job->history->prescribed[face];
+  const int32_t tie = slot < 0 ? -1 : job->heat->ties.tie_of[slot];
+  return tie < 0 ? 0.0 : now - job->heat->met[tie];
+}
+
+/* Mirrors change with the planes that they are mirrored at. */
+static void move_mirrors(const mpmi_heat_job *job, const mpmi_tie *tie) {
+  double change[3] = {0.0, 0.0, 0.0};
+  for (int32_t k = 0; k < job->step->settings->grid->dim; ++k) {
+    if (tie->face[k] < 0) continue;
+    int32_t offset[3] = {0, 0, 0};
+    offset[k] = tie->face[k] % 2 ? 1 : -1;
+    change[k] =
+        change_at(job, tie->face[k], mpmi_blocks_beside(&job->step->layout->blocks, tie->master, offset));
+  }
+  for (int64_t i = tie->first; i < tie->first + tie->count; ++i) {
+    const mpmi_follower *f = &job->heat->ties.follower[i];
+    mpmi_heat_flow(job->heat, f->slot)[MPMI_HEAT_INCREMENT] += base_of(job, f, change);
+  }
+}
+
 void mpmi_heat_prescribe(const mpmi_heat_job *job) {
   const mpmi_constraints *ties = &job->heat->ties;
   for (int64_t i = 0; i < ties->tie_count; ++i) {
-    const int32_t face = mpmi_heat_face(job, &ties->tie[i]);
-    if (face < 0) continue;
-    const double before =
-        job->history->acted[face] > 0.0 ? job->history->prescribed[face] : job->heat->met[i];
-    const double now = job->step->settings->heat.wall[face].temperature;
-    spread(job, &ties->tie[i], now - before, 0);
+    const mpmi_tie *tie = &ties->tie[i];
+    const int32_t face = mpmi_heat_face(job, tie);
+    if (face >= 0)
+      spread(job, tie, change_at(job, face, tie->master), 0);
+    else
+      move_mirrors(job, tie);
   }
 }
 
@@ -248,15 +274,23 @@ static int32_t feeding_face(const mpmi_heat_job *job, const mpmi_tie *tie) {
   return face;
 }
 
-static void add_increment(const mpmi_heat *heat, int64_t slot) {
-  mpmi_heat_node(heat, slot)[MPMI_HEAT_TEMPERATURE] += mpmi_heat_flow(heat, slot)[MPMI_HEAT_INCREMENT];
+/* Temperatures of nodes have counted the change of what is prescribed from the start of the step. */
+static void raise_tie(const mpmi_heat *heat, const mpmi_tie *tie) {
+  const double rise = mpmi_heat_flow(heat, tie->master)[MPMI_HEAT_INCREMENT];
+  mpmi_heat_node(heat, tie->master)[MPMI_HEAT_TEMPERATURE] += rise;
+  for (int64_t i = tie->first; i < tie->first + tie->count; ++i) {
+    const mpmi_follower *f = &heat->ties.follower[i];
+    mpmi_heat_node(heat, f->slot)[MPMI_HEAT_TEMPERATURE] += mpmi_heat_sign(f) * rise;
+  }
 }
 
 static void untied_rises(void *data, int64_t task) {
   const mpmi_heat_job *job = data;
   const mpmi_share share = mpmi_share_of(job->step->settings, mpmi_slots(job->step->layout), task);
   for (int64_t slot = share.begin; slot < share.end; ++slot)
-    if (job->heat->ties.tie_of[slot] < 0) add_increment(job->heat, slot);
+    if (job->heat->ties.tie_of[slot] < 0)
+      mpmi_heat_node(job->heat, slot)[MPMI_HEAT_TEMPERATURE] +=
+          mpmi_heat_flow(job->heat, slot)[MPMI_HEAT_INCREMENT];
 }
 
 mpm_status mpmi_heat_settle(const mpmi_heat_job *job) {
@@ -270,10 +304,7 @@ mpm_status mpmi_heat_settle(const mpmi_heat_job *job) {
       heat += taken_up(job, ties->follower[d].slot);
     if (face >= 0 && mpmi_owns_node(job->step->layout->parts, tie->master))
       mpmi_exact_add(&job->heat->sum[MPMI_HEAT_WALLS + face], heat);
-    if (mpmi_heat_face(job, tie) >= 0) continue;
-    add_increment(job->heat, tie->master);
-    for (int64_t d = tie->first; d < tie->first + tie->count; ++d)
-      add_increment(job->heat, ties->follower[d].slot);
+    if (mpmi_heat_face(job, tie) < 0) raise_tie(job->heat, tie);
   }
   return mpmi_run_tasks(settings, 0, settings->tasks, untied_rises, (void *)(uintptr_t)job);
 }
