@@ -241,12 +241,16 @@ static inline double mpmi_newmark_acceleration(const mpmi_balance *balance, int6
          (beta * dt * dt);
 }
 
+/* Returns the mean acceleration over the step that belongs to a displacement. */
+static inline double mpmi_mean_acceleration(const mpmi_balance *balance, int64_t at) {
+  const double gamma = balance->settings->desc.newmark_gamma;
+  return (1.0 - gamma) * balance->newton->vector[MPMI_A0][at] +
+         gamma * mpmi_newmark_acceleration(balance, at);
+}
+
 /* Returns the velocity at the end of the step that belongs to a displacement. */
 static inline double mpmi_newmark_velocity(const mpmi_balance *balance, int64_t at) {
-  const mpmi_newton *newton = balance->newton;
-  const double gamma = balance->settings->desc.newmark_gamma;
-  return newton->vector[MPMI_V0][at] + balance->step->dt * ((1.0 - gamma) * newton->vector[MPMI_A0][at] +
-                                                            gamma * mpmi_newmark_acceleration(balance, at));
+  return balance->newton->vector[MPMI_V0][at] + balance->step->dt * mpmi_mean_acceleration(balance, at);
 }
 
 /* Returns what damping adds to the acceleration of a component in the balance, for a velocity: nothing where

@@ -7,6 +7,14 @@
 
 #include <string.h>
 
+/* Returns the inertia per mass that constraints of a row balance. Where particles take whole increments, what
+ * holds a component gives it what they take: its acceleration at the end has the whole change in it. */
+static double inertia_on(const mpmi_balance *balance, int64_t at) {
+  if (!balance->step->whole_increments || !mpmi_is_held(balance->newton->matrix.held[at]))
+    return mpmi_newmark_inertia(balance, at);
+  return mpmi_mean_acceleration(balance, at);
+}
+
 /* Returns the force of constraints on a node; the node's own inertia is among what they balance. */
 static double reaction_on(const mpmi_balance *balance, const mpmi_active_node *node, int32_t c) {
   const mpmi_newton *newton = balance->newton;
@@ -14,8 +22,7 @@ static double reaction_on(const mpmi_balance *balance, const mpmi_active_node *n
   double force =
       mpmi_momentum(&newton->force, node->slot)[c] - mpmi_momentum(&newton->external, node->slot)[c];
   if (mpmi_is_dynamic(balance->settings))
-    force +=
-        *mpmi_mass(&balance->nodes->solved, node->slot) * node->sign[c] * mpmi_newmark_inertia(balance, at);
+    force += *mpmi_mass(&balance->nodes->solved, node->slot) * node->sign[c] * inertia_on(balance, at);
   return force;
 }
 

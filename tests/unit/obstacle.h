@@ -70,5 +70,7 @@ static inline mpm_contact_info touch_of(const world *w, const mpm_obstacle *obst
 void add_obstacle_states(Suite *suite);
 /* Adds those of obstacle_corners.c. */
 void add_obstacle_corners(Suite *suite);
+/* Adds those of obstacle_reactions.c. */
+void add_obstacle_reactions(Suite *suite);
 
 #endif

@@ -1,0 +1,86 @@
+/* Implicit steps with contact and inertia: what walls, prescribed particles and the host report is what the
+ * particles gain. */
+#include "obstacle.h"
+
+typedef struct newmark {
+  double gamma, beta;
+} newmark;
+static const newmark rules[] = {{0.5, 0.25}, {0.5, 0.5}, {1.0, 0.5625}, {1.0, 1.0}};
+enum { RULES = sizeof rules / sizeof *rules };
+
+static world_desc newmark_world(const newmark *of, int32_t basis, int64_t cells, double h) {
+  const method how = {METHOD(BSPLINE2, NEWMARK, FLIP, 1.0, "Newmark")};
+  world_desc desc = world_with(&how, 2, cells, h);
+  desc.grid.basis = basis;
+  desc.stepper.newmark_gamma = of->gamma;
+  desc.stepper.newmark_beta = of->beta;
+  desc.stepper.newton_tolerance_residual = 1e-12;
+  return desc;
+}
+
+/* ---- what drives a body --------------------------------------------------------------------------------- */
+/* The mean velocity over a step of what begins at rest and accelerates by 1. */
+static mpm_status accelerate(void *user, const mpm_particle_batch *b, double *add) {
+  (void)user;
+  for (int64_t p = 0; p < b->n; ++p) add[p] += b->t + 0.5 * b->dt;
+  return MPM_OK;
+}
+static mpm_status drive(void *user, const mpm_node_batch *b, uint8_t *is_held, double *velocity) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i) is_held[i] = 1, velocity[i] = b->t + 0.5 * b->dt;
+  return MPM_OK;
+}
+
+/* A body is driven along a smooth plane on which it rests: nothing resists but its inertia. Prescribed particles
+ * have that themselves, and their reaction is 0; that of the host is the momentum that the body gains, and with
+ * the trapezoid rule its work is the kinetic energy. */
+START_TEST(driven_along_a_plane) {
+  const newmark *of = &rules[_i / 2];
+  const int32_t by_host = _i % 2;
+  const double h = 0.1, dt = 1e-3, lower[2] = {5.0 * h, 3.0 * h}, upper[2] = {7.0 * h, 5.0 * h};
+  world w;
+  world_desc desc = newmark_world(of, MPM_BSPLINE2, 12, h);
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, lower, upper, 2);
+  if (by_host) {
+    ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, drive, NULL));
+  } else {
+    ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 2, (uint8_t[]){1, 0}));
+    ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, accelerate, NULL));
+  }
+  mpm_obstacle_desc d = obstacle_desc(MPM_SHAPE_PLANE);
+  d.position[1] = lower[1];
+  mpm_obstacle *o = put_obstacle(&w, &d);
+  const double mass = mass_of(&w, set);
+  double work = 0.0, start = 0.0;
+  for (int32_t step = 0; step < 6; ++step) {
+    const mpm_step_info before = world_info(&w), after = world_step(&w, dt);
+    const double mean = dt * (step + 0.5), gained = after.momentum[0] - before.momentum[0];
+    if (by_host) {
+      int64_t nodes;
+      double *of_nodes = fetch_nodes(&w, "reaction", &nodes);
+      ck_within("host", dt * sum_of(nodes, of_nodes), gained, 1e-12 * mass * dt);
+      free(of_nodes);
+      work += gained * mean;
+      if (of->gamma == 0.5 && of->beta == 0.25)
+        ck_within("energy", after.external_work_total, after.kinetic_energy, 1e-10 * mass * mean * mean);
+    } else {
+      double force[2];
+      ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, set, force));
+      ck_within("reaction", force[0], 0.0, 1e-10 * mass);
+      work += mass * (mean - start) * mean;
+      start = mean;
+    }
+    ck_within("work", after.external_work_total, work, 1e-10 * mass * mean * mean);
+  }
+  drop_obstacle(&w, o);
+  world_close(&w);
+}
+END_TEST
+
+void add_obstacle_reactions(Suite *suite) {
+  TCase *reactions = tcase_create("reactions");
+  tcase_add_loop_test(reactions, driven_along_a_plane, 0, 2 * RULES);
+  tcase_set_timeout(reactions, 60);
+  suite_add_tcase(suite, reactions);
+}
