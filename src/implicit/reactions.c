@@ -67,28 +67,30 @@ static void record_friction_walls(mpmi_balance *balance) {
 }
 
 /* Records one component of one row, on the nodes that move with it. Each has its share of contact and of the
- * extension by mass; of the force of contact in the balance, bodies get the share that is momentum. */
+ * extension by mass. Of the force of contact in the balance bodies get a share as momentum, and so much of it
+ * a wall undoes; where the row is held contact_on() returns that share. */
 static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
   const mpmi_constraints *constraints = &balance->layout->constraints;
+  const int32_t held = mpmi_is_held(newton->matrix.held[row * balance->settings->grid->dim + c]);
   const double dt = balance->step->dt, contact = contact_on(balance, row, c),
-               beyond = 1.0 - mpmi_contact_share(balance->settings),
-               given = contact + extension_on(balance, row, c);
+               beyond = held ? 0.0 : (1.0 - mpmi_contact_share(balance->settings)) * contact,
+               given = contact + extension_on(balance, row, c), as_momentum = given - beyond;
   mpmi_whole_sum *tally = balance->step->work->tally.sum;
   const int32_t own = mpmi_is_own_row(&newton->matrix, row); /* one part books what happens there */
   double total = 0.0, along = 0.0, on_nodes = 0.0;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
     const mpmi_active_node *node = &newton->active[newton->members[m]];
     const double mass = *mpmi_mass(&balance->nodes->solved, node->slot), all = reaction_on(balance, node, c);
-    const double part = mass > 0.0 ? node->sign[c] * mass / newton->mass[row] : 0.0, share = part * given;
-    const double impulse = dt * (all - share);
+    const double part = mass > 0.0 ? node->sign[c] * mass / newton->mass[row] : 0.0;
+    const double impulse = dt * (all - part * given);
     balance->nodes->impulse[node->slot].given[c] = impulse;
     if (mass > 0.0)
       balance->nodes->impulse[node->slot].change[c] =
-          dt * (all - part * (given - contact) - beyond * part * contact) / mass;
+          dt * (all - part * (given - contact) - part * beyond) / mass;
     total += impulse;
     along += node->sign[c] * impulse;
-    on_nodes += share;
+    on_nodes += part * as_momentum;
   }
   const int64_t slot = newton->active[newton->members[newton->members_start[row]]].slot;
   const int32_t tie = constraints->tie_of[slot];
@@ -99,7 +101,7 @@ static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
     balance->nodes->impulse[slot].given[c] = balance->nodes->impulse[slot].change[c] = 0.0;
   } else if (constraints->tie[tie].face[c] >= 0) {
     /* a mirror image undoes a part of what its master is given: the wall has that */
-    const double undone = dt * (on_nodes - given);
+    const double undone = dt * (on_nodes - as_momentum);
     balance->nodes->impulse[master].given[c] += undone;
     if (own) mpmi_exact_add(&tally[MPMI_TALLY_FACES + 3 * constraints->tie[tie].face[c] + c], total + undone);
   }

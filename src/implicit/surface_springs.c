@@ -195,9 +195,7 @@ static void tell_walls(mpmi_balance *balance, const mpm_surface *s, int64_t k, c
     const mpmi_active_node *node = &newton->active[newton->active_of[s->around.slot[n]]];
     for (int32_t c = 0; c < s->grid->dim; ++c) {
       if (tie->face[c] < 0 || mpmi_held_by(balance->nodes, tie->master, c)) continue;
-      const double given =
-          s->around.weight[n] * force[c] *
-          (mpmi_is_held(newton->matrix.held[(int64_t)node->row * s->grid->dim + c]) ? share : 1.0);
+      const double given = share * s->around.weight[n] * force[c];
       mpmi_exact_add(&balance->step->work->tally.sum[MPMI_TALLY_FACES + 3 * tie->face[c] + c],
                      -balance->step->dt * (1.0 - node->sign[c]) * given);
     }

@@ -78,9 +78,49 @@ START_TEST(driven_along_a_plane) {
 }
 END_TEST
 
+/* ---- walls ---------------------------------------------------------------------------------------------- */
+/* An obstacle presses a thin layer onto a fixed wall, and reaches nodes that the wall mirrors. With gamma = 1 what
+ * particles gain is what acts at the end of the step. */
+START_TEST(layer_on_a_wall) {
+  static const int32_t bases[] = {MPM_BSPLINE2, MPM_BSPLINE3, MPM_GIMP};
+  const newmark of = {1.0, (double[]){0.5, 0.5625, 1.0}[_i / 6]};
+  const int32_t layers = 1 + _i % 6 / 3;
+  const double h = 0.125, dt = 0.01, lower[2] = {0.0, 0.0}, upper[2] = {0.5, layers * h};
+  world w;
+  world_desc desc = newmark_world(&of, bases[_i % 3], 8, h);
+  desc.grid.cells[0] = 4;
+  desc.grid.periodic[0] = 1;
+  desc.law.E = 100.0;
+  desc.law.density = 1.0;
+  desc.stepper.gravity[1] = -1.0;
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, lower, upper, 2);
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FIXED, 0.0));
+  mpm_obstacle_desc d = obstacle_desc(MPM_SHAPE_PLANE);
+  d.motion = MPM_MOTION_PRESCRIBED;
+  d.position[1] = upper[1];
+  d.orientation[0] = 0.0, d.orientation[3] = 1.0;
+  d.velocity[1] = -0.1;
+  mpm_obstacle *o = put_obstacle(&w, &d);
+  double pressed = 0.0;
+  for (int32_t step = 0; step < 4; ++step) {
+    const mpm_step_info before = world_info(&w), after = world_step(&w, dt);
+    double wall[2];
+    ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_Y_MIN, wall));
+    const double by_obstacle = touch_of(&w, o).force[1], weight = -mass_of(&w, set);
+    ck_within("balance", wall[1] + by_obstacle + weight, (after.momentum[1] - before.momentum[1]) / dt, 1e-9);
+    pressed += by_obstacle;
+  }
+  ck_assert_double_lt(pressed, -1.0);
+  drop_obstacle(&w, o);
+  world_close(&w);
+}
+END_TEST
+
 void add_obstacle_reactions(Suite *suite) {
   TCase *reactions = tcase_create("reactions");
   tcase_add_loop_test(reactions, driven_along_a_plane, 0, 2 * RULES);
+  tcase_add_loop_test(reactions, layer_on_a_wall, 0, 18);
   tcase_set_timeout(reactions, 60);
   suite_add_tcase(suite, reactions);
 }
