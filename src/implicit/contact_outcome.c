@@ -46,8 +46,8 @@ static int32_t may_slide(const mpmi_balance *balance, const mpmi_constraint *of,
   const double *mass = balance->newton->mass;
   int32_t light = mpmi_inner(of->force, touch->normal) <= pushes_at_all * most_force;
   for (int32_t i = 0; i < 2; ++i) {
-    const int64_t beside = of->row[i] < 0 ? -1 : mpmi_heaviest_beside(balance, of->row[i], -1);
-    light |= beside >= 0 && mass[of->row[i]] <= weighs_at_all * mass[beside];
+    const double beside = of->row[i] < 0 ? 0.0 : mpmi_heaviest_beside(balance, of->row[i], -1);
+    light |= beside > 0.0 && mass[of->row[i]] <= weighs_at_all * beside;
   }
   return light || !of->closed || mpmi_is_tie(balance, of) || touch->rule->normal == MPM_NORMAL_FIXED ||
          (first->surface >= 0 && contact->surface[first->surface].shape == MPM_SHAPE_PLANE);

@@ -10,6 +10,8 @@
 
 /* A row is light with no more than this share of the mass of the heaviest beside it. */
 static const double light_row = 1e-3;
+/* Masses are alike that differ by no more than this share: rows of a regular lattice do so by rounding. */
+static const double alike = 1e-9;
 
 /* Computes means by row: sums mass and mass times value of its nodes, and divides. */
 static void fold_means(const mpmi_balance *balance, double *mean) {
@@ -108,17 +110,31 @@ static mpm_status find_accelerations(mpmi_balance *balance, double *clock) {
   return status;
 }
 
+/* Gives a force on a row to the heaviest beside it, to each of those alike its part: any one of them would
+ * lie to a side. */
+static void give_to_heaviest(const mpmi_balance *balance, int64_t at, double most, double force) {
+  const mpmi_newton *newton = balance->newton;
+  const int32_t dim = balance->settings->grid->dim, c = (int32_t)(at % dim);
+  const double above = most * (1.0 - alike);
+  int64_t count = 0, next = 0, other;
+  while (mpmi_next_beside(balance, at / dim, c, above, &next) >= 0) ++count;
+  next = 0;
+  while ((other = mpmi_next_beside(balance, at / dim, c, above, &next)) >= 0)
+    newton->vector[MPMI_A0][other * dim + c] += force / (double)count / newton->mass[other];
+}
+
 /* Light rows, where f / m is rough, take the accelerations of the particles, and the rest of their force
- * goes to a neighbour. */
+ * goes to neighbours. */
 static void smooth_light_rows(mpmi_balance *balance, const double *of_particles) {
   const mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
   double *start = newton->vector[MPMI_A0];
   for (int64_t at = 0; at < newton->matrix.rows * dim; ++at) {
     if (mpmi_is_held(newton->matrix.held[at])) continue;
-    const int64_t row = at / dim, heavy = mpmi_heaviest_beside(balance, row, (int32_t)(at % dim));
-    if (heavy < 0 || newton->mass[row] > light_row * newton->mass[heavy]) continue;
-    start[heavy * dim + at % dim] += newton->mass[row] * (start[at] - of_particles[at]) / newton->mass[heavy];
+    const double mass = newton->mass[at / dim],
+                 most = mpmi_heaviest_beside(balance, at / dim, (int32_t)(at % dim));
+    if (!(most > 0.0) || mass > light_row * most) continue;
+    give_to_heaviest(balance, at, most, mass * (start[at] - of_particles[at]));
     start[at] = of_particles[at];
   }
 }

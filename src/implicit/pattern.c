@@ -252,20 +252,26 @@ static int64_t row_beside(const mpmi_balance *balance, int64_t active, int32_t o
   return other < 0 ? -1 : newton->active[other].row;
 }
 
-int64_t mpmi_heaviest_beside(const mpmi_balance *balance, int64_t row, int32_t c) {
+int64_t mpmi_next_beside(const mpmi_balance *balance, int64_t row, int32_t c, double above, int64_t *at) {
   const mpmi_newton *newton = balance->newton;
   const mpmi_matrix *A = &newton->matrix;
-  const int32_t body = body_of_row(balance, row);
+  const int64_t first = newton->members_start[row],
+                count = (newton->members_start[row + 1] - first) * newton->offsets;
+  while (*at < count) {
+    const int64_t member = newton->members[first + *at / newton->offsets];
+    const int64_t other = row_beside(balance, member, (int32_t)(*at % newton->offsets));
+    ++*at;
+    if (other >= 0 && other != row && newton->mass[other] > above &&
+        !(c >= 0 && mpmi_is_held(A->held[other * A->block + c])) &&
+        body_of_row(balance, other) == body_of_row(balance, row))
+      return other;
+  }
+  return -1;
+}
+
+double mpmi_heaviest_beside(const mpmi_balance *balance, int64_t row, int32_t c) {
   double most = 0.0;
-  int64_t found = -1;
-  for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m)
-    for (int32_t o = 0; o < newton->offsets; ++o) {
-      const int64_t other = row_beside(balance, newton->members[m], o);
-      if (other < 0 || other == row || !(newton->mass[other] > most) ||
-          (c >= 0 && mpmi_is_held(A->held[other * A->block + c])) || body_of_row(balance, other) != body)
-        continue;
-      most = newton->mass[other];
-      found = other;
-    }
-  return found;
+  int64_t at = 0, other;
+  while ((other = mpmi_next_beside(balance, row, c, most, &at)) >= 0) most = balance->newton->mass[other];
+  return most;
 }

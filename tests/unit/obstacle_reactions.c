@@ -1,5 +1,5 @@
 /* Implicit steps with contact and inertia: what walls, prescribed particles and the host report is what the
- * particles gain. */
+ * particles gain, and what is symmetric stays so. */
 #include "obstacle.h"
 
 typedef struct newmark {
@@ -117,10 +117,54 @@ START_TEST(layer_on_a_wall) {
 }
 END_TEST
 
+/* ---- symmetry ------------------------------------------------------------------------------------------- */
+/* A block that is symmetric about the middle of the grid falls straight on a smooth wall. It reaches over to rows
+ * of nodes that have hardly any of its mass. */
+START_TEST(symmetric_block) {
+  enum { EDGE = 8, COUNT = EDGE * EDGE * EDGE };
+  const double h = 0.125, apart = 0.5 * h, middle = 5.0 * h, volume = apart * apart * apart;
+  const int32_t basis = _i ? MPM_BSPLINE3 : MPM_BSPLINE2;
+  double x[3 * COUNT], volumes[COUNT];
+  for (int32_t p = 0; p < COUNT; ++p) {
+    const int32_t at[3] = {p / (EDGE * EDGE), p / EDGE % EDGE, p % EDGE};
+    for (int32_t c = 0; c < 3; ++c) {
+      const double off = (at[c] - 0.5 * (EDGE - 1)) * apart, wider = 0.75 * apart;
+      x[c * COUNT + p] = c == 1 ? (at[c] + 0.5) * apart : middle + off + (off < 0.0 ? -wider : wider);
+    }
+    volumes[p] = volume;
+  }
+  world w;
+  world_desc desc = newmark_world(&rules[0], basis, 10, h);
+  desc.grid.dim = 3;
+  desc.grid.cells[2] = 10;
+  desc.grid.spacing[2] = h;
+  desc.law.E = 1000.0;
+  desc.law.density = 1.0;
+  desc.stepper.gravity[1] = -1.0;
+  mpm_particles *set = world_open(&w, &desc);
+  ck_ok(&w, mpm_particles_add(set, COUNT, x, NULL, volumes, NULL, NULL, NULL));
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 3, (double[]){0.0, -0.2, 0.0}));
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, 0.0));
+  for (int32_t step = 0; step < 8; ++step) world_step(&w, 0.01);
+  double *v = fetch(&w, set, "velocity", 3), *stress = fetch(&w, set, "stress", 6);
+  const double most = largest(COUNT, stress + COUNT), fastest = largest(COUNT, v + COUNT);
+  ck_assert_double_gt(most, 0.1);
+  for (int32_t p = 0; p < COUNT; ++p) {
+    const int32_t image = p + EDGE * EDGE * (EDGE - 1 - 2 * (p / (EDGE * EDGE)));
+    ck_within("stress", stress[COUNT + p], stress[COUNT + image], 1e-9 * most);
+    ck_within("across", v[p], -v[image], 1e-9 * fastest);
+    ck_within("down", v[COUNT + p], v[COUNT + image], 1e-9 * fastest);
+  }
+  free(v), free(stress);
+  world_close(&w);
+}
+END_TEST
+
 void add_obstacle_reactions(Suite *suite) {
   TCase *reactions = tcase_create("reactions");
   tcase_add_loop_test(reactions, driven_along_a_plane, 0, 2 * RULES);
   tcase_add_loop_test(reactions, layer_on_a_wall, 0, 18);
+  tcase_add_loop_test(reactions, symmetric_block, 0, 2);
   tcase_set_timeout(reactions, 60);
   suite_add_tcase(suite, reactions);
 }
