@@ -1832,7 +1832,8 @@ export class Surface implements Handle {
    * lies on the left of the line, so that the outline of a body goes round counter-clockwise. Each edge is
    * divided into equal parts no longer than spacing > 0, with a marker in the middle of each: half a spacing
    * of the grid is right. *first_id and *count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED:
-   * the grid is not 2-D. Else as mpm_surface_add().
+   * the grid is not 2-D. MPM_E_ARG: a closed line has one or two points, and so no inside. Else as
+   * mpm_surface_add().
    */
   addPolyline(position: ArrayLike<number>, closed: boolean, spacing: number): Filled;
   /**

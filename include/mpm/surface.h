@@ -143,7 +143,8 @@ MPM_API mpm_status mpm_surface_add(mpm_surface *surface, int64_t n, const double
  * lies on the left of the line, so that the outline of a body goes round counter-clockwise. Each edge is
  * divided into equal parts no longer than spacing > 0, with a marker in the middle of each: half a spacing of
  * the grid is right. *first_id and *count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the
- * grid is not 2-D. Else as mpm_surface_add(). */
+ * grid is not 2-D. MPM_E_ARG: a closed line has one or two points, and so no inside. Else as
+ * mpm_surface_add(). */
 MPM_API mpm_status mpm_surface_add_polyline(mpm_surface *surface, int64_t n, const double *position,
                                             int32_t closed, double spacing, int64_t *first_id,
                                             int64_t *count);

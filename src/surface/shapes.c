@@ -88,6 +88,10 @@ mpm_status mpm_surface_add_polyline(mpm_surface *s, int64_t n, const double *pos
     status = mpmi_fail(c, MPM_E_ARG, "closed is %d, must be 0 or 1", (int)closed);
   if (!status) status = check_spacing(s, spacing);
   if (!status) status = check_points(s, n, position);
+  if (!status && closed && n > 0 && n < 3)
+    status = mpmi_fail(c, MPM_E_ARG,
+                       "a closed line of %lld %s has no inside: give closed = 0 or at least three points",
+                       (long long)n, n == 1 ? "point" : "points");
   for (int64_t i = 0; i < n && !status; ++i) {
     const int64_t j = i + 1 < n ? i + 1 : 0;
     const double from[2] = {position[i], position[n + i]}, to[2] = {position[j], position[n + j]};

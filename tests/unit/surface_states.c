@@ -322,6 +322,14 @@ START_TEST(refusals) {
              MPM_E_UNSUPPORTED, "mpm_surface_add_polyline()");
   ck_refused(&flat, mpm_surface_add_polyline(second, 2, corners, 2, 0.5, NULL, NULL), MPM_E_ARG,
              "closed is 2");
+  for (int32_t n = 1; n <= 2; ++n)
+    ck_refused(&flat, mpm_surface_add_polyline(second, n, corners, 1, 0.5, NULL, NULL), MPM_E_ARG,
+               "has no inside: give closed = 0 or at least three points");
+  ck_assert_int_eq(mpm_surface_count(second), 0);
+  ck_ok(&flat, mpm_surface_add_polyline(second, 0, NULL, 1, 0.5, &first, &count));
+  ck_assert_int_eq(count, 0);
+  ck_ok(&flat, mpm_surface_add_polyline(second, 3, corners, 1, 0.5, &first, &count));
+  ck_assert_int_eq(count, 7);
   ck_refused(&w, mpm_stepper_add_surface(w.stepper, second), MPM_E_ARG, "another context");
   ck_refused(&flat, mpm_stepper_remove_surface(flat.stepper, second), MPM_E_NOT_FOUND, "not in this stepper");
   ck_ok(&flat, mpm_surface_destroy(second));

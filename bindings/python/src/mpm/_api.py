@@ -2084,7 +2084,8 @@ spacing, int64_t *first_id, int64_t *count)
 Adds markers along the line through n points, position[2][n]; closed 1: back to the first. The material lies on the
 left of the line, so that the outline of a body goes round counter-clockwise. Each edge is divided into equal parts no
 longer than spacing > 0, with a marker in the middle of each: half a spacing of the grid is right. *first_id and
-*count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the grid is not 2-D. Else as mpm_surface_add().""",
+*count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the grid is not 2-D. MPM_E_ARG: a closed line has
+one or two points, and so no inside. Else as mpm_surface_add().""",
     "mpm_surface_add_triangles": """mpm_status mpm_surface_add_triangles(mpm_surface *surface, int64_t n, const double *position, int64_t triangles, const
 int64_t *corner, double spacing, int64_t *first_id, int64_t *count)
 

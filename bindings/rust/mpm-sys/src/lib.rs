@@ -2988,8 +2988,8 @@ extern "C" {
     /// Adds markers along the line through n points, position[2][n]; closed 1: back to the first. The material lies on
     /// the left of the line, so that the outline of a body goes round counter-clockwise. Each edge is divided into equal
     /// parts no longer than spacing > 0, with a marker in the middle of each: half a spacing of the grid is right.
-    /// *first_id and *count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the grid is not 2-D. Else as
-    /// mpm_surface_add().
+    /// *first_id and *count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the grid is not 2-D. MPM_E_ARG: a
+    /// closed line has one or two points, and so no inside. Else as mpm_surface_add().
     pub fn mpm_surface_add_polyline(
         surface: *mut mpm_surface,
         n: i64,
