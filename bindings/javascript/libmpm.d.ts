@@ -1823,8 +1823,9 @@ export class Surface implements Handle {
    *   material and carry nothing.
    * - first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
    *
-   * In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite or a position is
-   * outside the grid; nothing is added. MPM_E_STATE during a staged step.
+   * In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite, a position is
+   * outside the grid, or the surface would have more than 2^28 markers; nothing is added. MPM_E_STATE during
+   * a staged step.
    */
   add(markers: NewMarkers): bigint;
   /**

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "context/structs.h"
+#include "particles/builtin_fields.h"
 #include "particles/law_batch.h"
 
 enum { FULL = 3, TANGENT_ROWS = 81 };
@@ -29,9 +30,10 @@ static mpm_status check_rows(const mpm_material *material, const mpm_material_ba
 static mpm_status check_batch(const mpm_material *material, const mpm_material_batch *b,
                               const double *tangent) {
   mpm_context *context = material->context;
-  if (b->n < 0 || b->ld < b->n)
-    return mpmi_fail(context, MPM_E_ARG, "mpm_material_update: n = %lld and ld = %lld must be 0 <= n <= ld",
-                     (long long)b->n, (long long)b->ld);
+  if (b->n < 0 || b->ld < b->n || b->ld > MPMI_MAX_SLOTS)
+    return mpmi_fail(context, MPM_E_ARG,
+                     "mpm_material_update: n = %lld and ld = %lld must be 0 <= n <= ld <= %lld",
+                     (long long)b->n, (long long)b->ld, (long long)MPMI_MAX_SLOTS);
   if (b->state_count != material->state_count)
     return mpmi_fail(context, MPM_E_ARG, "mpm_material_update: state_count = %d, but the material has %d",
                      b->state_count, material->state_count);

@@ -83,7 +83,16 @@ mpm_status mpmi_marker_place(const mpm_surface *s, int64_t which, double *positi
                    (long long)which, (int)k, position[k], s->grid->desc.origin[k], s->grid->upper[k]);
 }
 
+mpm_status mpmi_surface_check_count(const mpm_surface *s, const char *what, int64_t n) {
+  if (n >= 0 && n <= MPMI_MOST_MARKERS) return MPM_OK;
+  return mpmi_fail(s->context, MPM_E_ARG, "%s is %lld, must be >= 0 and at most %d", what, (long long)n,
+                   (int)MPMI_MOST_MARKERS);
+}
+
 mpm_status mpmi_markers_reserve(mpm_context *c, mpmi_markers *markers, int64_t more) {
+  if (more > MPMI_MOST_MARKERS - markers->count)
+    return mpmi_fail(c, MPM_E_ARG, "%lld more markers are too many: a surface has at most %d",
+                     (long long)more, (int)MPMI_MOST_MARKERS);
   const int64_t wanted = markers->count + more;
   if (wanted <= markers->capacity) return MPM_OK;
   const int64_t capacity = wanted > 2 * markers->capacity ? wanted : 2 * markers->capacity;
@@ -125,7 +134,7 @@ mpm_status mpm_surface_add(mpm_surface *s, int64_t n, const double *position, co
   const int32_t dim = s->grid->dim;
   const int64_t had = s->now.count, next_id = s->now.next_id;
   mpm_status status = mpmi_surface_changeable(s);
-  if (!status && n < 0) status = mpmi_fail(c, MPM_E_ARG, "n is %lld, must be >= 0", (long long)n);
+  if (!status) status = mpmi_surface_check_count(s, "n", n);
   if (!status && n && !position) status = mpmi_fail(c, MPM_E_ARG, "position is NULL");
   if (!status) status = mpmi_markers_reserve(c, &s->now, n);
   for (int64_t i = 0; i < n && !status; ++i) {
@@ -196,8 +205,6 @@ mpm_status mpm_surface_remove(mpm_surface *s, int64_t n, const int64_t *ids) {
 }
 
 /* ---- splitting ----------------------------------------------------------------------------------------- */
-enum { MOST_MARKERS = 1 << 28 };
-
 /* Halves a marker across one of its edges; `half` becomes the far half. */
 static void halve(const mpm_grid *grid, mpmi_marker *m, int32_t e, mpmi_marker *half) {
   m->reference_area *= 0.5;
@@ -240,9 +247,9 @@ mpm_status mpmi_markers_split(mpm_context *c, const mpm_grid *grid, mpmi_markers
     const double first = length_of(markers->at[i].edge[0]);
     const double second = mpmi_is_axisymmetric(grid) ? 0.0 : length_of(markers->at[i].edge[1]);
     const int32_t is_long = first > spacing || second > spacing;
-    if (is_long && markers->count >= MOST_MARKERS)
+    if (is_long && markers->count >= MPMI_MOST_MARKERS)
       return mpmi_fail(c, MPM_E_ARG, "a spacing of %g makes more than %d markers", spacing,
-                       (int)MOST_MARKERS);
+                       (int)MPMI_MOST_MARKERS);
     if (is_long) {
       const mpm_status status = mpmi_markers_reserve(c, markers, 1);
       if (status) return status;

@@ -13,7 +13,8 @@ static mpm_status check_spacing(const mpm_surface *s, double spacing) {
 
 static mpm_status check_points(const mpm_surface *s, int64_t n, const double *position) {
   mpm_context *c = s->context;
-  if (n < 0) return mpmi_fail(c, MPM_E_ARG, "n is %lld, must be >= 0", (long long)n);
+  const mpm_status status = mpmi_surface_check_count(s, "n", n);
+  if (status) return status;
   if (n && !position) return mpmi_fail(c, MPM_E_ARG, "position is NULL");
   for (int64_t i = 0; i < n; ++i)
     for (int32_t k = 0; k < s->grid->dim; ++k)
@@ -164,8 +165,7 @@ mpm_status mpm_surface_add_triangles(mpm_surface *s, int64_t n, const double *po
     status =
         mpmi_fail(c, MPM_E_UNSUPPORTED, "the grid is %d-D: triangles bound bodies in 3-D; use %s",
                   (int)s->grid->dim, s->grid->dim == 2 ? "mpm_surface_add_polyline()" : "mpm_surface_add()");
-  if (!status && triangles < 0)
-    status = mpmi_fail(c, MPM_E_ARG, "triangles is %lld, must be >= 0", (long long)triangles);
+  if (!status) status = mpmi_surface_check_count(s, "triangles", triangles);
   if (!status && triangles && !corner) status = mpmi_fail(c, MPM_E_ARG, "corner is NULL");
   if (!status) status = check_spacing(s, spacing);
   if (!status) status = check_points(s, n, position);

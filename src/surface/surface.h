@@ -30,6 +30,9 @@ typedef struct mpmi_marker {
   double prescribed_velocity[3], reaction[3], gap[3];
 } mpmi_marker;
 
+/* Markers of a surface at most: no sum or product of counts overflows. */
+enum { MPMI_MOST_MARKERS = 1 << 28 };
+
 /* Markers by ascending id. */
 typedef struct mpmi_markers {
   int64_t count, capacity, next_id;
@@ -154,6 +157,8 @@ void mpmi_marker_set_radius(mpmi_marker *marker, const mpm_grid *grid);
 void mpmi_marker_set_reference(mpmi_marker *marker);
 /* Refuses a position outside the grid, and wraps one that is inside. `which` counts markers in the text. */
 mpm_status mpmi_marker_place(const mpm_surface *surface, int64_t which, double *position);
+/* Refuses a count of the host that no surface could have. */
+mpm_status mpmi_surface_check_count(const mpm_surface *surface, const char *what, int64_t n);
 /* Makes room for so many more markers. Those that are there stay, and on failure nothing has changed. */
 mpm_status mpmi_markers_reserve(mpm_context *c, mpmi_markers *markers, int64_t more);
 /* Adds a marker for which there is room: it gets the next id. */

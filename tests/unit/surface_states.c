@@ -288,6 +288,7 @@ START_TEST(refusals) {
   ck_refused(&w, mpm_surface_add(s, 1, in, huge, NULL), MPM_E_ARG, "beyond the range");
   ck_refused(&w, mpm_surface_add(s, -1, in, NULL, NULL), MPM_E_ARG, "n is -1");
   ck_refused(&w, mpm_surface_add(s, 1, NULL, NULL, NULL), MPM_E_ARG, "position is NULL");
+  ck_refused(&w, mpm_surface_add(s, INT64_MAX, in, NULL, NULL), MPM_E_ARG, "at most 268435456");
   ck_refused(&w, mpm_surface_add_polyline(s, 1, in, 0, 1.0, NULL, NULL), MPM_E_UNSUPPORTED,
              "mpm_surface_add_triangles()");
   ck_assert_int_eq(mpm_surface_count(s), 0);
@@ -302,6 +303,13 @@ START_TEST(refusals) {
   int64_t first = -1, count = -1;
   ck_ok(&w, mpm_surface_add_triangles(s, 3, corners, 1, right, 0.5, &first, &count));
   ck_holds(first == 0 && count == 9 && mpm_surface_count(s) == 9);
+  for (int64_t n = INT64_MAX; n > 1 << 28; n /= 2) {
+    ck_refused(&w, mpm_surface_add(s, n, in, NULL, NULL), MPM_E_ARG, "at most 268435456");
+    ck_refused(&w, mpm_surface_add_triangles(s, n, corners, 1, right, 0.5, NULL, NULL), MPM_E_ARG, "n is");
+    ck_refused(&w, mpm_surface_add_triangles(s, 3, corners, n, right, 0.5, NULL, NULL), MPM_E_ARG,
+               "triangles is");
+  }
+  ck_refused(&w, mpm_surface_add(s, (1 << 28) - 8, in, NULL, NULL), MPM_E_ARG, "more markers are too many");
   double v[3];
   int64_t ids[2] = {4, 4}, got[9];
   ck_ok(&w, mpm_surface_get(s, "id", MPM_I64, 1, 9, NULL, got));
@@ -325,6 +333,8 @@ START_TEST(refusals) {
   for (int32_t n = 1; n <= 2; ++n)
     ck_refused(&flat, mpm_surface_add_polyline(second, n, corners, 1, 0.5, NULL, NULL), MPM_E_ARG,
                "has no inside: give closed = 0 or at least three points");
+  ck_refused(&flat, mpm_surface_add_polyline(second, INT64_MAX, corners, 0, 0.5, NULL, NULL), MPM_E_ARG,
+             "n is 9223372036854775807");
   ck_assert_int_eq(mpm_surface_count(second), 0);
   ck_ok(&flat, mpm_surface_add_polyline(second, 0, NULL, 1, 0.5, &first, &count));
   ck_assert_int_eq(count, 0);

@@ -147,6 +147,7 @@ START_TEST(refusals) {
   fill(&d, 70, 1), d.batch.struct_size = 8, refuses(m, &d, NULL, MPM_E_ARG, "struct_size");
   fill(&d, -1, 1), refuses(m, &d, NULL, MPM_E_ARG, "n = -1");
   fill(&d, 70, 1), d.batch.ld = 69, refuses(m, &d, NULL, MPM_E_ARG, "ld = 69");
+  fill(&d, 70, 1), d.batch.ld = INT64_MAX, refuses(m, &d, NULL, MPM_E_ARG, "n <= ld <= 4294967294");
   fill(&d, 70, 2), refuses(m, &d, NULL, MPM_E_ARG, "state_count = 2, but the material has 1");
   fill(&d, 70, 1), d.batch.dt = -1.0, refuses(m, &d, NULL, MPM_E_ARG, "dt = -1");
   fill(&d, 70, 1), d.batch.t = (double)NAN, refuses(m, &d, NULL, MPM_E_ARG, "must be finite");

@@ -2076,8 +2076,8 @@ Adds n markers.
   nothing.
 - first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
 
-In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite or a position is outside the
-grid; nothing is added. MPM_E_STATE during a staged step.""",
+In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite, a position is outside the grid,
+or the surface would have more than 2^28 markers; nothing is added. MPM_E_STATE during a staged step.""",
     "mpm_surface_add_polyline": """mpm_status mpm_surface_add_polyline(mpm_surface *surface, int64_t n, const double *position, int32_t closed, double
 spacing, int64_t *first_id, int64_t *count)
 
