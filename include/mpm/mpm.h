@@ -32,7 +32,8 @@
  *   left them, so zeros are the values to start with.
  * - Batches, and the info of mpm_progress_fn: the library sets struct_size to its own size. A host that uses
  *   a field newer than the oldest library it runs with asks first whether struct_size reaches that far.
- * - Fields called reserved are zero.
+ * - Fields called reserved are zero: in what the library writes, and in what it reads, where another value
+ *   is MPM_E_UNSUPPORTED, since a later release may have given it a meaning.
  *
  * @par Arrays
  * In callbacks and copies arrays are component-major: component c of item i is data[c * ld + i]. Tensors of

@@ -53,6 +53,18 @@
 RELEASES(FROZEN)
 const mpmi_release mpmi_releases[] = {RELEASES(ENTRY){NULL, 0}};
 
+/* Where the structs that hosts fill have a field called reserved. A release that gives one a meaning, and so
+ * another name, takes its line away: it checks the values of that field then. */
+#define RESERVED(X)                                                                                          \
+  X(mpm_transport)                                                                                           \
+  X(mpm_grid_desc)                                                                                           \
+  X(mpm_material_desc)                                                                                       \
+  X(mpm_stepper_desc)                                                                                        \
+  X(mpm_surface_desc)                                                                                        \
+  X(mpm_heat_desc)
+#define PLACE(type) {#type, (uint32_t)offsetof(type, reserved)},
+const mpmi_reserved mpmi_reserved_fields[] = {RESERVED(PLACE){NULL, 0}};
+
 /* No struct of this interface comes near; more is a size that was never set. */
 enum { LARGEST_STRUCT = 1 << 16 };
 
@@ -103,9 +115,23 @@ mpm_status mpmi_read_release(const mpmi_release *table, mpm_context *context, co
   return MPM_OK;
 }
 
+/* What a newer host asks for by a field that is reserved here must not be ignored. */
+static mpm_status check_reserved(mpm_context *context, const char *name, const void *given) {
+  const mpmi_reserved *field = mpmi_reserved_fields;
+  int32_t value = 0;
+  while (field->name && strcmp(field->name, name) != 0) ++field;
+  if (field->name) memcpy(&value, (const unsigned char *)given + field->at, sizeof value);
+  if (!value) return MPM_OK;
+  return mpmi_fail(
+      context, MPM_E_UNSUPPORTED,
+      "%s: reserved is %d, must be 0: this version of the library does not know what it asks for", name,
+      (int)value);
+}
+
 mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *desc, uint32_t known,
                             void *out) {
-  return mpmi_read_release(mpmi_releases, context, name, desc, known, out);
+  const mpm_status status = mpmi_read_release(mpmi_releases, context, name, desc, known, out);
+  return status ? status : check_reserved(context, name, out);
 }
 
 void mpmi_read_known(const char *name, const void *desc, uint32_t known, void *out) {

@@ -15,13 +15,22 @@ typedef struct mpmi_release {
 /* Every release of every versioned struct, of one struct in ascending order. The last entry has no name. */
 extern const mpmi_release mpmi_releases[];
 
+/* The place of a field called reserved, in bytes from the beginning of its struct. */
+typedef struct mpmi_reserved {
+  const char *name; /* of the struct */
+  uint32_t at;
+} mpmi_reserved;
+
+/* Those of all structs that mpmi_read_struct() reads. The last entry has no name. */
+extern const mpmi_reserved mpmi_reserved_fields[];
+
 /* The size of a struct in the first release that has it, below which a host's struct is refused. */
 uint32_t mpmi_first_size(const char *name);
 
 /* Reads a struct of the host into `out`, of `known` bytes. Fields that the host's struct does not have become
  * zero. A field that is cut in half by struct_size counts as one that it does not have. Bytes beyond the last
- * whole field that both know must be zero (MPM_E_UNSUPPORTED). `name` is that of the struct, also for the
- * error text. */
+ * whole field that both know must be zero, and so must a field called reserved (MPM_E_UNSUPPORTED). `name` is
+ * that of the struct, also for the error text. */
 mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *desc, uint32_t known,
                             void *out);
 /* The fields that both know of a struct that was refused with MPM_E_UNSUPPORTED. */
@@ -38,7 +47,7 @@ mpm_status mpmi_check_out_struct(mpm_context *context, const char *name, uint32_
 mpm_status mpmi_init_struct(const char *name, const void *defaults, uint32_t known, void *out,
                             uint32_t struct_size);
 
-/* These do the same for structs of a table other than mpmi_releases. */
+/* These do the same for structs of a table other than mpmi_releases, which have no field called reserved. */
 mpm_status mpmi_read_release(const mpmi_release *table, mpm_context *context, const char *name,
                              const void *desc, uint32_t known, void *out);
 mpm_status mpmi_init_release(const mpmi_release *table, const char *name, const void *defaults,

@@ -200,8 +200,6 @@ static mpm_status check_desc(mpm_context *context, const mpm_material_desc *d) {
   if (form != MPM_TANGENT_MINOR_SYMMETRIC && form != MPM_TANGENT_GENERAL && (form != 0 || d->tangent))
     return mpmi_fail(context, MPM_E_ARG, "mpm_material_desc: tangent_form = %d must be %d or %d", form,
                      MPM_TANGENT_MINOR_SYMMETRIC, MPM_TANGENT_GENERAL);
-  if (d->reserved)
-    return mpmi_fail(context, MPM_E_ARG, "mpm_material_desc: reserved = %d must be 0", d->reserved);
   for (int32_t k = 0; d->state_initial && k < d->state_count; ++k)
     if (!isfinite(d->state_initial[k]))
       return mpmi_fail(context, MPM_E_ARG, "mpm_material_desc: state_initial[%d] = %g must be finite", k,

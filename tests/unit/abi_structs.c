@@ -1,6 +1,7 @@
 /* Versioned structs of older and newer hosts and libraries, on a struct that has had three releases. Memory
  * of structs ends where struct_size says, so that a sanitizer sees every byte that is touched beyond. */
 #include <check.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -256,6 +257,48 @@ START_TEST(init_functions) {
 }
 END_TEST
 
+/* What the host sets a field called reserved to is not ignored, and a struct that ends before it has none. */
+START_TEST(reserved_fields) {
+  union {
+    mpm_transport transport;
+    mpm_grid_desc grid;
+    mpm_material_desc material;
+    mpm_stepper_desc stepper;
+    mpm_surface_desc surface;
+    mpm_heat_desc heat;
+  } d, read;
+  int32_t checked = 0;
+#define CHECK_RESERVED(name, at)                                                                             \
+  memset(&d, 0, sizeof d);                                                                                   \
+  (at)->struct_size = (uint32_t)sizeof *(at);                                                                \
+  ck_assert_int_eq(mpmi_read_struct(context, #name, at, (uint32_t)sizeof *(at), &read), MPM_OK);             \
+  (at)->reserved = -7;                                                                                       \
+  ck_assert_int_eq(mpmi_read_struct(context, #name, at, (uint32_t)sizeof *(at), &read), MPM_E_UNSUPPORTED);  \
+  ck_assert_ptr_nonnull(strstr(mpm_last_error(context), #name ": reserved is -7, must be 0"));               \
+  (at)->struct_size = mpmi_first_size(#name);                                                                \
+  ck_assert_int_eq(mpmi_read_struct(context, #name, at, (uint32_t)sizeof *(at), &read),                      \
+                   offsetof(name, reserved) < mpmi_first_size(#name) ? MPM_E_UNSUPPORTED : MPM_OK);          \
+  ++checked
+  CHECK_RESERVED(mpm_transport, &d.transport);
+  CHECK_RESERVED(mpm_grid_desc, &d.grid);
+  CHECK_RESERVED(mpm_material_desc, &d.material);
+  CHECK_RESERVED(mpm_stepper_desc, &d.stepper);
+  CHECK_RESERVED(mpm_surface_desc, &d.surface);
+  CHECK_RESERVED(mpm_heat_desc, &d.heat);
+  int32_t listed = 0;
+  while (mpmi_reserved_fields[listed].name) ++listed;
+  ck_assert_int_eq(checked, listed);
+  mpm_grid *grid = (mpm_grid *)(void *)&d;
+  ck_assert_int_eq(mpm_grid_desc_init(&d.grid, sizeof d.grid), MPM_OK);
+  d.grid.dim = 1;
+  d.grid.cells[0] = 4;
+  d.grid.spacing[0] = 0.25;
+  d.grid.reserved = 1;
+  ck_assert_int_eq(mpm_grid_create(context, &d.grid, &grid), MPM_E_UNSUPPORTED);
+  ck_assert_ptr_null(grid);
+}
+END_TEST
+
 TCase *abi_structs_case(void);
 TCase *abi_structs_case(void) {
   TCase *structs = tcase_create("structs");
@@ -270,5 +313,6 @@ TCase *abi_structs_case(void) {
   }
   tcase_add_test(structs, table);
   tcase_add_test(structs, init_functions);
+  tcase_add_test(structs, reserved_fields);
   return structs;
 }

@@ -108,7 +108,7 @@ START_TEST(refused_custom) {
     if (k == 6) d.tangent_form = 37, text = "tangent_form = 37";
     if (k == 7) d.tangent_form = 0, d.tangent = host_tangent, text = "tangent_form = 0";
     if (k == 8) d.state_count = 2, d.state_initial = initial, text = "state_initial[1]";
-    if (k == 9) d.reserved = 1, text = "reserved";
+    if (k == 9) d.reserved = 1, text = "reserved is 1", expected = MPM_E_UNSUPPORTED;
     if (k == 10) d.struct_size = 0, text = "struct_size";
     if (k == 11) d.struct_size--, text = "struct_size";
     if (k == 12) d.density = -1.0, text = "density = -1";
