@@ -1460,10 +1460,10 @@ callbacks.""",
 
 Gives one or two sentences, with the offending names and values, on the last call on this context or its objects that
 did not return MPM_OK. Calls that succeed leave them as they are, so that a host may clean up and log first and ask
-then; "" while no call has failed. The text belongs to the library and is valid until the next call on the context.
-Where no context is at hand (NULL, or one that was destroyed), a sentence that says so: the calls that get no further
-than to a NULL handle, or to one of another kind, have no other. May be called in callbacks, too, on the thread of the
-call.""",
+then; "" while no call has failed. The text belongs to the library and is valid until the next call on the context. Of
+NULL, and of a handle of another kind, a sentence that says so: the calls that get no further than to such a handle
+have no other. A context that was destroyed must not be given to this or any other call. May be called in callbacks,
+too, on the thread of the call.""",
     "mpm_set_last_error": """mpm_status mpm_set_last_error(mpm_context *context, mpm_status status, const char *text)
 
 Makes text the sentence of mpm_last_error() and returns status: for libraries that stand on this one and refuse a call
