@@ -209,34 +209,45 @@ static double distance_of_nodes(const mpmi_contact_search *search, int64_t block
   return squared > 0.0 ? sqrt(squared) : spacing_along(b->grid, n);
 }
 
+/* Nodes of a block that lie beyond the grid have no material: hosts are not asked for them, and none of them
+ * is bound. */
 static void measure_near(const mpmi_contact_search *search, int64_t which, mpmi_failure *failure) {
   const mpmi_blocks *b = &search->step->layout->blocks;
   const mpmi_contact_nodes *contact = search->contact;
   const mpmi_near *near = &contact->near_surface[which];
+  const int64_t first = (int64_t)near->block * b->nodes;
   double *value = contact->near_value + which * MPMI_NEAR_ROWS * b->nodes;
   const double within = mpmi_is_total_lagrangian(b->grid) ? bound_within_total : bound_within;
-  mpmi_distances points = {.n = b->nodes, .t = search->step->t, .moves = 1};
+  mpmi_distances points = {.n = 0, .t = search->step->t, .moves = 1};
   mpmi_distance_fault fault;
+  int32_t node[MPMI_DISTANCE_POINTS];
   for (int32_t i = 0; i < b->nodes; ++i) {
+    int64_t index[3];
     double x[3];
-    mpmi_contact_position(b, contact, (int64_t)near->block * b->nodes + i, x);
-    for (int32_t k = 0; k < b->grid->dim; ++k) points.position[k][i] = x[k];
+    value[MPMI_NEAR_DISTANCE * b->nodes + i] = (double)INFINITY;
+    mpmi_blocks_index(b, first + i, index);
+    if (!mpmi_node_exists(b->grid, index)) continue;
+    mpmi_contact_position(b, contact, first + i, x);
+    for (int32_t k = 0; k < b->grid->dim; ++k) points.position[k][points.n] = x[k];
+    node[points.n++] = i;
   }
+  if (!points.n) return;
   if (mpmi_surface_distances(&contact->surface[near->surface], &points, &fault)) {
-    const int64_t slot = (int64_t)near->block * b->nodes + (fault.point < 0 ? 0 : fault.point);
+    const int64_t slot = first + node[fault.point < 0 ? 0 : fault.point];
     mpmi_failure found = mpmi_node_failure(fault.cause, b, slot, fault.what);
     found.callback_status = fault.returned;
     found.body = 0; /* all bodies of the site have the node */
     mpmi_failure_take(failure, found);
     return;
   }
-  for (int32_t i = 0; i < b->nodes; ++i) {
-    const double n[3] = {points.normal[0][i], points.normal[1][i], points.normal[2][i]};
-    const int32_t binds = points.distance[i] <= within * distance_of_nodes(search, near->block, i, n);
-    value[MPMI_NEAR_DISTANCE * b->nodes + i] = binds ? points.distance[i] : (double)INFINITY;
+  for (int64_t p = 0; p < points.n; ++p) {
+    const int32_t i = node[p];
+    const double n[3] = {points.normal[0][p], points.normal[1][p], points.normal[2][p]};
+    const int32_t binds = points.distance[p] <= within * distance_of_nodes(search, near->block, i, n);
+    if (binds) value[MPMI_NEAR_DISTANCE * b->nodes + i] = points.distance[p];
     for (int32_t k = 0; k < 3; ++k) {
       value[(MPMI_NEAR_NORMAL + k) * b->nodes + i] = n[k];
-      value[(MPMI_NEAR_VELOCITY + k) * b->nodes + i] = points.velocity[k][i];
+      value[(MPMI_NEAR_VELOCITY + k) * b->nodes + i] = points.velocity[k][p];
     }
   }
 }

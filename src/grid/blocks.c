@@ -345,5 +345,8 @@ void mpmi_blocks_index(const mpmi_blocks *b, int64_t slot, int64_t *index) {
 int64_t mpmi_blocks_number(const mpmi_blocks *b, int64_t slot) {
   int64_t index[3];
   mpmi_blocks_index(b, slot, index);
+  for (int32_t k = 0; k < b->grid->dim; ++k)
+    if (b->grid->desc.periodic[k])
+      index[k] -= floor_div(index[k], b->grid->desc.cells[k]) * b->grid->desc.cells[k];
   return mpmi_node_number(b->grid, index);
 }

@@ -91,7 +91,7 @@ int64_t mpmi_blocks_beside(const mpmi_blocks *blocks, int64_t slot, const int32_
 int64_t mpmi_blocks_around(const mpmi_blocks *blocks, int64_t slot, const int32_t *offset);
 /* Finds the index of the node in a slot. */
 void mpmi_blocks_index(const mpmi_blocks *blocks, int64_t slot, int64_t *index);
-/* Returns its number, by which messages name nodes. */
+/* Returns its number, by which messages name nodes; of a periodic image that of its original. */
 int64_t mpmi_blocks_number(const mpmi_blocks *blocks, int64_t slot);
 
 #endif

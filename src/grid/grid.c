@@ -247,6 +247,16 @@ int64_t mpmi_node_number(const mpm_grid *grid, const int64_t *index) {
   return number;
 }
 
+int32_t mpmi_node_exists(const mpm_grid *grid, const int64_t *index) {
+  int32_t exists = 1;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const int64_t first = -grid->below, last_anchor = grid->desc.cells[k] - 1 + grid->centred;
+    const int32_t inside = index[k] >= first && index[k] < last_anchor + first + grid->width;
+    exists &= inside || grid->desc.periodic[k];
+  }
+  return exists;
+}
+
 /* Returns the position in [lower, upper) that is congruent to x; *periods is how many periods x was away. */
 static double wrapped(double x, double lower, double upper, int64_t *periods) {
   double crossed = floor((x - lower) / (upper - lower));

@@ -82,6 +82,8 @@ int64_t mpmi_face_node(const mpm_grid *grid, int32_t face);
 double mpmi_node_position(const mpm_grid *grid, int32_t axis, int64_t index);
 /* Returns the number of a node that mpm_step_info.node reports. */
 int64_t mpmi_node_number(const mpm_grid *grid, const int64_t *index);
+/* Returns 1 where particles in the grid can have a node, and 0 beyond. On periodic axes all are images. */
+int32_t mpmi_node_exists(const mpm_grid *grid, const int64_t *index);
 
 /* Tests a position (strided by `stride`) against the bounds and wraps it on periodic axes, adding the
  * periods crossed to image[] (may be NULL). Returns the first axis on which the position is not finite or

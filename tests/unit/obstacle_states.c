@@ -447,6 +447,84 @@ START_TEST(outlives_the_stepper) {
 }
 END_TEST
 
+/* ---- nodes that the host is asked for ------------------------------------------------------------------ */
+/* A floor that is known only where the grid has nodes, and nowhere near one place. */
+typedef struct floor_in_grid {
+  int32_t first, answer; /* first: axis from which on the grid has faces */
+  double low, high, height, unknown[3];
+} floor_in_grid;
+
+static mpm_status floor_of(void *user, const mpm_distance_batch *b) {
+  const floor_in_grid *f = user;
+  const int32_t up = b->dim > 1;
+  for (int64_t i = 0; i < b->n; ++i) {
+    double off = 0.0;
+    b->distance[i] = b->position[up * b->ld + i] - f->height;
+    for (int32_t k = 0; k < b->dim; ++k) {
+      const double x = b->position[k * b->ld + i];
+      b->normal[k * b->ld + i] = k == up;
+      off = fmax(off, fabs(x - f->unknown[k]));
+      if (k >= f->first && !(x >= f->low && x <= f->high)) b->distance[i] = NOT_A_NUMBER;
+    }
+    if (off < 0.01 * arena_spacing) b->distance[i] = NOT_A_NUMBER;
+  }
+  return f->answer;
+}
+
+static int64_t failed_node(const world *w, mpm_status wanted) {
+  mpm_step_info info = {.struct_size = sizeof info};
+  ck_refused(w, mpm_step(w->stepper, arena_dt, &info), wanted, "callback of an obstacle");
+  return info.node;
+}
+
+START_TEST(asked_for_nodes_of_the_grid) {
+  static const struct {
+    int32_t basis, boundary;
+    double beyond; /* spacings from the faces to the last node */
+  } cases[] = {{MPM_LINEAR, MPM_BOUNDARY_GHOST, 0.0},       {MPM_BSPLINE2, MPM_BOUNDARY_GHOST, 1.0},
+               {MPM_BSPLINE3, MPM_BOUNDARY_GHOST, 1.0},     {MPM_GIMP, MPM_BOUNDARY_GHOST, 1.0},
+               {MPM_BSPLINE2, MPM_BOUNDARY_OPEN_KNOT, 0.0}, {MPM_BSPLINE3, MPM_BOUNDARY_OPEN_KNOT, 0.0}};
+  enum { CELLS = 14, NODES = CELLS + 3, AT = 5 };
+  const double h = arena_spacing, lower[3] = {5.0 * h, 5.0 * h, 5.0 * h},
+               upper[3] = {9.0 * h, 9.0 * h, 9.0 * h};
+  const double down[3] = {-arena_speed, -arena_speed, 0.0};
+  const int32_t dim = 1 + _i % 3;
+  for (int32_t c = 0; c < 6; ++c)
+    for (int32_t periodic = 0; periodic < (dim > 1 ? 2 : 1); ++periodic) {
+      world w;
+      world_desc desc = world_with(&methods[0], dim, CELLS, h);
+      desc.grid.basis = cases[c].basis;
+      desc.grid.boundary_basis = cases[c].boundary;
+      desc.grid.periodic[0] = periodic;
+      mpm_particles *set = world_open(&w, &desc);
+      world_fill(&w, set, lower, upper, 2);
+      ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, dim, down + (dim == 1)));
+      const double margin = (cases[c].beyond + 1e-9) * h;
+      floor_in_grid of = {.first = periodic, .low = -margin, .high = CELLS * h + margin, .height = 5.0 * h};
+      for (int32_t k = 0; k < 3; ++k) of.unknown[k] = INFINITE;
+      mpm_obstacle_desc d = obstacle_desc(MPM_SHAPE_DISTANCE);
+      for (int32_t k = 0; k < 3; ++k) d.position[k] = 0.0;
+      d.distance = floor_of;
+      d.user = &of;
+      mpm_obstacle *floor = put_obstacle(&w, &d);
+      for (int32_t i = 0; i < 4; ++i) world_step(&w, arena_dt);
+      ck_assert_double_ne(touch_of(&w, floor).impulse[dim > 1], 0.0);
+      int64_t nodes = 1, wanted = 0;
+      for (int32_t k = 0; k < dim; ++k) nodes *= NODES, wanted = wanted * NODES + AT + 1;
+      of.answer = -3;
+      int64_t node = failed_node(&w, MPM_E_CALLBACK);
+      ck_holds(node >= 0 && node < nodes);
+      of.answer = 0;
+      for (int32_t k = 0; k < dim; ++k) of.unknown[k] = AT * h;
+      if (cases[c].boundary == MPM_BOUNDARY_GHOST) ck_holds(failed_node(&w, MPM_NONFINITE) == wanted);
+      for (int32_t k = 0; k < 3; ++k) of.unknown[k] = INFINITE;
+      world_step(&w, arena_dt);
+      drop_obstacle(&w, floor);
+      world_close(&w);
+    }
+}
+END_TEST
+
 /* ---- shapes -------------------------------------------------------------------------------------------- */
 /* Distances are no farther apart than their points, and have their gradients where these exist. */
 START_TEST(shapes) {
@@ -495,6 +573,7 @@ void add_obstacle_states(Suite *suite) {
   tcase_add_loop_test(bits, threads, 0, BROAD);
   tcase_add_loop_test(bits, saved_in_contact, 0, BROAD);
   tcase_add_loop_test(bits, failing_steps, 0, METHODS);
+  tcase_add_loop_test(bits, asked_for_nodes_of_the_grid, 0, 3);
   tcase_add_test(bits, memory_runs_out);
   tcase_add_test(bits, unlike_states);
   tcase_add_test(bits, reports_move_along);

@@ -625,8 +625,11 @@ pub type mpm_friction_fn = Option<unsafe extern "C" fn(
     friction: *mut f64,
 ) -> mpm_status>;
 
-/// Gives distances of points (mt). Returns as mpm_particle_fn does. A value that is not finite, or a normal whose length
-/// is not 1 to 1e-6, ends the step: MPM_NONFINITE, MPM_E_CALLBACK.
+/// Gives distances of points (mt). Points are particles, and nodes of blocks that are near the obstacle, also those
+/// without material: nodes lie in the grid or up to one spacing beyond its faces, and of a grid with total_lagrangian = 1
+/// where the material has taken them. On periodic axes a point is the image nearest to the centre. Returns as
+/// mpm_particle_fn does. A value that is not finite, or a normal whose length is not 1 to 1e-6, ends the step:
+/// MPM_NONFINITE, MPM_E_CALLBACK.
 pub type mpm_distance_fn = Option<unsafe extern "C" fn(
     user: *mut c_void,
     batch: *const mpm_distance_batch,
