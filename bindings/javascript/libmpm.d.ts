@@ -1439,7 +1439,7 @@ export class Context implements Handle {
   /**
    * Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned.
    * MPM_E_ARG: grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a
-   * fluid, snow or clay on an MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1.
+   * fluid, snow, clay or mu_i on an MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1.
    */
   particles(grid: Grid, material: Material): Particles;
   /**

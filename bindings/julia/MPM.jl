@@ -1523,8 +1523,8 @@ end
 
 """
 Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned. MPM_E_ARG:
-grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow or clay on an
-MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1.
+grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow, clay or mu_i
+on an MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1.
 """
 function mpm_particles_create(context, grid, material, out)
     return ccall((:mpm_particles_create, libmpm), Int32, (Ptr{mpm_context}, Ptr{mpm_grid}, Ptr{mpm_material}, Ptr{Ptr{mpm_particles}}),

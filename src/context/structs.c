@@ -91,6 +91,12 @@ uint32_t mpmi_first_size(const char *name) {
   return first_size(mpmi_releases, name);
 }
 
+/* Descriptors have an _init; other structs that hosts fill have none. */
+static int32_t has_init(const char *name) {
+  const size_t length = strlen(name);
+  return length > 5 && strcmp(name + length - 5, "_desc") == 0;
+}
+
 static void copy_known(const void *desc, uint32_t whole, uint32_t known, void *out) {
   memset(out, 0, known);
   memcpy(out, desc, whole);
@@ -103,8 +109,10 @@ mpm_status mpmi_read_release(const mpmi_release *table, mpm_context *context, co
   const uint32_t given = struct_size_of(desc);
   const uint32_t whole = whole_size(table, name, given < known ? given : known);
   if (!whole || given > LARGEST_STRUCT)
-    return mpmi_fail(context, MPM_E_ARG, "%s: struct_size is %u, must be at least %u (call its _init first)",
-                     name, given, first_size(table, name));
+    return mpmi_fail(context, MPM_E_ARG, "%s: struct_size is %u, must be at least %u (%s)", name, given,
+                     first_size(table, name),
+                     has_init(name) ? "call its _init first"
+                                    : "it has no _init: zero it, then set struct_size to its sizeof");
   const unsigned char *bytes = desc;
   for (uint32_t i = whole; i < given; ++i)
     if (bytes[i])

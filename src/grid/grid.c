@@ -1,5 +1,6 @@
 /* Grids are described and checked here; so are the numbering of nodes, bounds and periods. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "context/structs.h"
@@ -267,6 +268,16 @@ static double wrapped(double x, double lower, double upper, int64_t *periods) {
   }
   *periods = (int64_t)crossed;
   return place < lower ? lower : place;
+}
+
+const char *mpmi_grid_demand(const mpm_grid *grid, int32_t axis, char *text) {
+  const double lower = grid->desc.origin[axis], upper = grid->upper[axis];
+  if (grid->desc.periodic[axis])
+    snprintf(text, MPMI_GRID_TEXT, "within %.0f periods of %.12g, the lower end of a periodic axis",
+             most_periods, lower);
+  else
+    snprintf(text, MPMI_GRID_TEXT, "inside the grid, in [%.12g, %.12g]", lower, upper);
+  return text;
 }
 
 int32_t mpmi_grid_place(const mpm_grid *grid, double *position, int64_t stride, int64_t *image,

@@ -85,6 +85,9 @@ int64_t mpmi_node_number(const mpm_grid *grid, const int64_t *index);
 /* Returns 1 where particles in the grid can have a node, and 0 beyond. On periodic axes all are images. */
 int32_t mpmi_node_exists(const mpm_grid *grid, const int64_t *index);
 
+/* Writes what a position must be along an axis, for messages; returns the text. */
+enum { MPMI_GRID_TEXT = 128 };
+const char *mpmi_grid_demand(const mpm_grid *grid, int32_t axis, char *text);
 /* Tests a position (strided by `stride`) against the bounds and wraps it on periodic axes, adding the
  * periods crossed to image[] (may be NULL). Returns the first axis on which the position is not finite or
  * lies outside the bounds, or -1. A position on a bound is inside. */

@@ -30,10 +30,8 @@ static mpm_status check_place(const mpm_particles *set, int32_t field, const dou
   for (int32_t k = 0; k < set->grid->dim; ++k) x[k] = value[k * stride];
   int32_t axis = mpmi_grid_place(set->grid, x, 1, NULL, 0);
   if (axis < 0) return MPM_OK;
-  char must[96];
-  snprintf(must, sizeof must, "inside the grid, in [%.12g, %.12g]", set->grid->desc.origin[axis],
-           set->grid->upper[axis]);
-  return refuse(set, field, axis, x[axis], who, must);
+  char must[MPMI_GRID_TEXT];
+  return refuse(set, field, axis, x[axis], who, mpmi_grid_demand(set->grid, axis, must));
 }
 
 static mpm_status check_determinant(const mpm_particles *set, const double *value, int64_t stride,

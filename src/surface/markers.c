@@ -79,8 +79,9 @@ mpm_status mpmi_surface_changeable(const mpm_surface *s) {
 mpm_status mpmi_marker_place(const mpm_surface *s, int64_t which, double *position) {
   const int32_t k = mpmi_grid_place(s->grid, position, 1, NULL, 0);
   if (k < 0) return MPM_OK;
-  return mpmi_fail(s->context, MPM_E_ARG, "marker %lld: position[%d] is %g, must be in the grid, %g to %g",
-                   (long long)which, (int)k, position[k], s->grid->desc.origin[k], s->grid->upper[k]);
+  char must[MPMI_GRID_TEXT];
+  return mpmi_fail(s->context, MPM_E_ARG, "marker %lld: position[%d] is %.12g, must be %s", (long long)which,
+                   (int)k, position[k], mpmi_grid_demand(s->grid, k, must));
 }
 
 mpm_status mpmi_surface_check_count(const mpm_surface *s, const char *what, int64_t n) {

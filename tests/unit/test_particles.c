@@ -224,7 +224,16 @@ START_TEST(periodic_axes_wrap) {
   ck_assert_int_eq(memcmp(image, periods, sizeof image), 0);
   x[2] = 3.6;
   ck_refused(&w, mpm_particles_add(w.set[0], 2, x, NULL, volume, NULL, NULL, NULL), MPM_E_ARG,
-             "component 1, is 3.6");
+             "component 1, is 3.6, must be inside the grid, in [-1, 3.5]");
+  x[2] = 1.0;
+  x[0] = 5.0 * 2147483648.0 - 1.0; /* so many periods away, and the last place that is nearer */
+  ck_refused(&w, mpm_particles_add(w.set[0], 2, x, NULL, volume, NULL, NULL, NULL), MPM_E_ARG,
+             "must be within 2147483648 periods of -1, the lower end of a periodic axis");
+  x[0] -= 5.0;
+  ck_ok(&w, mpm_particles_add(w.set[0], 2, x, NULL, volume, NULL, NULL, NULL));
+  ck_ok(&w, mpm_particles_get(w.set[0], "position", MPM_F64, 2, 2, (int64_t[]){2, 3}, at));
+  ck_ok(&w, mpm_particles_get(w.set[0], "image", MPM_I64, 2, 2, (int64_t[]){2, 3}, image));
+  ck_assert(at[0] == -1.0 && image[0] == INT64_C(2147483647));
 }
 END_TEST
 

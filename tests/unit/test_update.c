@@ -144,7 +144,7 @@ START_TEST(refusals) {
     d.batch.n = 0;
     ck_ok(m->context, mpm_material_update(m, &d.batch, NULL, NULL));
   }
-  fill(&d, 70, 1), d.batch.struct_size = 8, refuses(m, &d, NULL, MPM_E_ARG, "struct_size");
+  fill(&d, 70, 1), d.batch.struct_size = 8, refuses(m, &d, NULL, MPM_E_ARG, "it has no _init: zero it");
   fill(&d, -1, 1), refuses(m, &d, NULL, MPM_E_ARG, "n = -1");
   fill(&d, 70, 1), d.batch.ld = 69, refuses(m, &d, NULL, MPM_E_ARG, "ld = 69");
   fill(&d, 70, 1), d.batch.ld = INT64_MAX, refuses(m, &d, NULL, MPM_E_ARG, "n <= ld <= 4294967294");

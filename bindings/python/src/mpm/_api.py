@@ -1588,8 +1588,8 @@ Frees the material and calls release_user. NULL is fine. MPM_E_STATE while sets 
     "mpm_particles_create": """mpm_status mpm_particles_create(mpm_context *context, mpm_grid *grid, mpm_material *material, mpm_particles **out)
 
 Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned. MPM_E_ARG:
-grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow or clay on an
-MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1.""",
+grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow, clay or mu_i
+on an MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1.""",
     "mpm_particles_destroy": """mpm_status mpm_particles_destroy(mpm_particles *particles)
 
 Frees the set. NULL is fine. MPM_E_STATE while a stepper holds it or a view of it is out.""",

@@ -2222,8 +2222,8 @@ extern "C" {
     pub fn mpm_material_destroy(material: *mut mpm_material) -> mpm_status;
 
     /// Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned. MPM_E_ARG:
-    /// grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow or clay
-    /// on an MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1.
+    /// grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow, clay or
+    /// mu_i on an MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1.
     pub fn mpm_particles_create(
         context: *mut mpm_context,
         grid: *mut mpm_grid,
