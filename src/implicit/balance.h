@@ -172,6 +172,7 @@ typedef struct mpmi_newton {
   mpmi_constraint *constraint;
   int32_t touches, several_fields; /* some part has constraints; some part couples bodies */
   int32_t knows_stiffness;         /* constraints have got their stiffness in this step */
+  int32_t carries_loads;           /* external forces act on held nodes that have no unknown, on this part */
   int32_t has_springs;             /* surfaces prescribe how some of the material moves */
   int32_t springs_measure;         /* and their springs have got their stiffness in this step */
   int32_t history_capacity, history_count;

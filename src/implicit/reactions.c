@@ -66,6 +66,19 @@ static void record_friction_walls(mpmi_balance *balance) {
   }
 }
 
+/* Books what holds a component of a node that moves by itself, and of its images: its impulse, and the same
+ * along the motion of that node. */
+static void book(mpmi_balance *balance, int64_t master, int32_t c, double total, double along) {
+  const mpmi_constraints *constraints = &balance->layout->constraints;
+  mpmi_whole_sum *tally = balance->step->work->tally.sum;
+  if (mpmi_held_by(balance->nodes, master, c)) {
+    mpmi_exact_add(&tally[MPMI_TALLY_WORK], along * balance->nodes->held_value[master][c]);
+  } else {
+    const mpmi_tie *tie = &constraints->tie[constraints->tie_of[master]];
+    mpmi_exact_add(&tally[MPMI_TALLY_FACES + 3 * tie->face[c] + c], total);
+  }
+}
+
 /* Records one component of one row, on the nodes that move with it. Each has its share of contact and of the
  * extension by mass. Of the force of contact in the balance bodies get a share as momentum, and so much of it
  * a wall undoes; where the row is held contact_on() returns that share. */
@@ -76,7 +89,6 @@ static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const double dt = balance->step->dt, contact = contact_on(balance, row, c),
                beyond = held ? 0.0 : (1.0 - mpmi_contact_share(balance->settings)) * contact,
                given = contact + extension_on(balance, row, c), as_momentum = given - beyond;
-  mpmi_whole_sum *tally = balance->step->work->tally.sum;
   const int32_t own = mpmi_is_own_row(&newton->matrix, row); /* one part books what happens there */
   double total = 0.0, along = 0.0, on_nodes = 0.0;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
@@ -96,15 +108,40 @@ static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const int32_t tie = constraints->tie_of[slot];
   const int64_t master = tie < 0 ? slot : constraints->tie[tie].master;
   if (mpmi_held_by(balance->nodes, master, c)) {
-    if (own) mpmi_exact_add(&tally[MPMI_TALLY_WORK], along * balance->nodes->held_value[master][c]);
+    if (own) book(balance, master, c, total, along);
   } else if (tie < 0) { /* nothing holds it: this is what the iterations have left */
     balance->nodes->impulse[slot].given[c] = balance->nodes->impulse[slot].change[c] = 0.0;
   } else if (constraints->tie[tie].face[c] >= 0) {
     /* a mirror image undoes a part of what its master is given: the wall has that */
     const double undone = dt * (on_nodes - as_momentum);
     balance->nodes->impulse[master].given[c] += undone;
-    if (own) mpmi_exact_add(&tally[MPMI_TALLY_FACES + 3 * constraints->tie[tie].face[c] + c], total + undone);
+    if (own) book(balance, master, c, total + undone, along);
   }
+}
+
+/* Records on a node without an unknown what carries the external force on it; returns its impulse. */
+static double carry(mpmi_balance *balance, int64_t slot, int32_t c) {
+  const double impulse = -balance->step->dt * mpmi_momentum(&balance->newton->external, slot)[c];
+  const double mass = *mpmi_mass(&balance->nodes->solved, slot);
+  balance->nodes->impulse[slot].given[c] = impulse;
+  if (mass > 0.0) balance->nodes->impulse[slot].change[c] = impulse / mass;
+  return impulse;
+}
+
+/* Records one component of a held node that has no unknown, for it has no stiffness, and of its images. */
+static void record_carried(mpmi_balance *balance, int64_t master, int32_t c) {
+  const mpmi_constraints *constraints = &balance->layout->constraints;
+  const int32_t at = constraints->tie_of[master];
+  const mpmi_tie *tie = at < 0 ? NULL : &constraints->tie[at];
+  if (mpmi_holder_of(balance, master, c) == MPMI_ROW_FREE) return;
+  double total = carry(balance, master, c), along = total;
+  for (int64_t d = 0; tie && d < tie->count; ++d) {
+    const mpmi_follower *follower = &constraints->follower[tie->first + d];
+    const double impulse = carry(balance, follower->slot, c);
+    total += impulse;
+    along += follower->sign[c] * impulse;
+  }
+  if (mpmi_owns_node(balance->layout->parts, master)) book(balance, master, c, total, along);
 }
 
 mpm_status mpmi_record_reactions(mpmi_balance *balance) {
@@ -113,6 +150,9 @@ mpm_status mpmi_record_reactions(mpmi_balance *balance) {
   if (slots) memset(balance->nodes->impulse, 0, (size_t)slots * sizeof *balance->nodes->impulse);
   for (int64_t r = 0; r < balance->newton->matrix.rows; ++r)
     for (int32_t c = 0; c < balance->settings->grid->dim; ++c) record_row(balance, r, c);
+  for (int64_t i = 0; i < slots && balance->newton->carries_loads; ++i)
+    for (int32_t c = 0; c < balance->settings->grid->dim; ++c)
+      if (balance->newton->active_of[i] < 0 && mpmi_master_of(balance, i) == i) record_carried(balance, i, c);
   record_friction_walls(balance);
   if (!balance->nodes->prescription.any) return MPM_OK;
   mpmi_bound bound = {.step = balance->step,

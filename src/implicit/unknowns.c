@@ -36,16 +36,14 @@ static int32_t is_active(const mpmi_balance *balance, const cuts *cut, int64_t s
  * balance. Forces up to FORCE_ROUNDING of the largest are what rounding leaves of vanishing weights, and
  * count as none. */
 static mpm_status check_carried(mpmi_balance *balance, const cuts *cut) {
-  const mpmi_newton *newton = balance->newton;
+  mpmi_newton *newton = balance->newton;
   const int64_t slots = mpmi_slots(balance->layout);
   const int32_t dim = balance->settings->grid->dim;
   for (int64_t i = 0; i < slots; ++i)
     for (int32_t c = 0; c < dim && newton->active_of[i] < 0; ++c) {
       const double force = mpmi_momentum(&newton->external, i)[c];
-      const int64_t master = mpmi_master_of(balance, i);
-      const int32_t tie = balance->layout->constraints.tie_of[i];
-      const int32_t held = mpmi_held_by(balance->nodes, master, c) ||
-                           (tie >= 0 && balance->layout->constraints.tie[tie].zero[c]);
+      const int32_t held = mpmi_holder_of(balance, mpmi_master_of(balance, i), c) != MPMI_ROW_FREE;
+      newton->carries_loads |= held && fabs(force) > 0.0;
       if (held || fabs(force) <= cut->force) continue;
       balance->step->failure.node = mpmi_blocks_number(&balance->layout->blocks, i);
       return mpmi_fail(
@@ -189,6 +187,7 @@ static mpm_status find_here(mpmi_balance *balance, const cuts *cut, int32_t *is_
   if (newton->offsets != offsets) newton->version = -1;
   newton->offsets = offsets;
   mark(balance, cut, &active, &rows);
+  newton->carries_loads = 0;
   if (!mpmi_is_dynamic(balance->settings) && (status = check_carried(balance, cut))) return status;
   if (active > INT32_MAX)
     return mpmi_fail(balance->settings->context, MPM_E_UNSUPPORTED,

@@ -421,6 +421,75 @@ START_TEST(short_steps) {
 }
 END_TEST
 
+static mpm_status hold_top(void *user, const mpm_node_batch *b, uint8_t *is_held, double *velocity) {
+  const double *from = user;
+  for (int32_t c = 0; c < b->dim; ++c)
+    for (int64_t i = 0; i < b->n; ++i) {
+      is_held[c * b->ld + i] = b->position[i] > from[0] + 1e-9;
+      velocity[c * b->ld + i] = c ? 0.0 : from[1];
+    }
+  return MPM_OK;
+}
+
+/* A block on a fixed wall under a platen of law rigid that fills the grid up to another wall, quasi-static: whoever
+ * moves the platen carries its weight and what is applied to it, on nodes too that it alone reaches. A prescribed
+ * platen reports the block, and works on it alone, whatever it weighs; of the host all reactions carry all. */
+START_TEST(heavy_platen) {
+  const int32_t by_host = _i % 2, walled = _i / 2 % 2;
+  const double h = 0.125, g = -1.0, applied = -0.5, top[2] = {5.0 * h, -0.01};
+  double reported[2] = {0.0, 0.0}, work[2] = {0.0, 0.0};
+  for (int32_t heavy = 0; heavy < 2; ++heavy) {
+    world w;
+    world_desc d = implicit_default(2, 8, h, implicit_basis(_i / 4));
+    d.stepper.quasi_static = 1;
+    d.stepper.newton_tolerance_residual = 1e-12;
+    d.stepper.gravity[0] = g;
+    d.grid.cells[0] = walled ? 7 : 12;
+    d.grid.cells[1] = 4;
+    d.grid.periodic[1] = 1;
+    d.law.E = 100.0, d.law.density = 1.0;
+    mpm_particles *block = world_open(&w, &d);
+    const world_law rigid = {.model = "rigid", .density = heavy ? 100.0 : 1.0};
+    mpm_particles *platen = world_add_set(&w, &rigid);
+    const double low[2][2] = {{0.0, 0.0}, {top[0], 0.0}}, high[2][2] = {{top[0], 0.5}, {7.0 * h, 0.5}};
+    world_fill(&w, block, low[0], high[0], 2);
+    const int64_t n = world_fill(&w, platen, low[1], high[1], 2);
+    ck_ok(&w, mpm_particles_set_all(platen, "applied_force", MPM_F64, 2,
+                                    (double[]){(heavy ? applied : 0.0) / (double)n, 0.0}));
+    ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
+    if (walled) ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MAX, MPM_WALL_FIXED, 0.0));
+    if (by_host) {
+      ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, hold_top, (void *)(uintptr_t)top));
+    } else {
+      ck_ok(&w, mpm_particles_set_all(platen, "prescribed", MPM_U8, 2, (uint8_t[]){1, 1}));
+      ck_ok(&w, mpm_particles_set_all(platen, "velocity", MPM_F64, 2, (double[]){top[1], 0.0}));
+    }
+    const double weight = -g * mass_of(&w, block),
+                 carried = -g * mass_of(&w, platen) - (heavy ? applied : 0.0);
+    const mpm_step_info info = world_step(&w, 1.0);
+    double wall[2], force[2], beyond[2] = {0.0, 0.0};
+    ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_X_MIN, wall));
+    if (walled) ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_X_MAX, beyond));
+    if (by_host) {
+      int64_t nodes;
+      double *of_nodes = fetch_nodes(&w, "reaction", &nodes);
+      ck_within("host", sum_of(nodes, of_nodes), weight + carried, 1e-9 * (weight + carried));
+      free(of_nodes);
+    } else {
+      ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, platen, force));
+      ck_within("platen", wall[0] + beyond[0] + force[0], weight, 1e-9 * (weight + carried));
+      reported[heavy] = force[0];
+      work[heavy] = info.external_work;
+      ck_assert_double_lt(force[0], -0.5);
+    }
+    world_close(&w);
+  }
+  ck_within("reaction", reported[1], reported[0], 1e-9);
+  if (!walled) /* beside a wall nodes are slower than the particles, on which weight works */
+    ck_within("work", work[1], work[0], 1e-11);
+}
+END_TEST
+
 static mpm_status sink(void *user, const mpm_particle_batch *b, double *add) {
   (void)user;
   for (int64_t i = 0; i < b->n; ++i) add[b->ld + i] -= 0.1;
@@ -489,6 +558,7 @@ Suite *implicit_suite(void) {
   tcase_add_loop_test(tests, remedy_across_a_seam, 0, 5 * IMPLICIT_BASES);
   tcase_add_test(tests, short_steps);
   tcase_add_test(tests, platen_in_the_air);
+  tcase_add_loop_test(tests, heavy_platen, 0, 4 * IMPLICIT_BASES);
   TCase *on_threads = tcase_create("threads");
   tcase_set_timeout(on_threads, 60.0);
   tcase_set_tags(on_threads, "long");
