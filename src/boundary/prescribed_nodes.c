@@ -15,27 +15,33 @@ typedef struct stencil {
   double w[MOST_NODES];
 } stencil;
 
-/* Weights below this are rounding of none, as where the edge of a particle's domain lies on a node: they must
- * not decide who holds it. */
-static const double least_weight = 1e-12;
+/* A particle that reaches a node by no more than this share of a cell, as where the edge of its domain lies on
+ * the node, reaches it by rounding, which must not decide who holds the node. Weights begin with a power of
+ * that reach, the order of the basis. */
+static const double least_reach = 1e-12;
+
+static double least_weight(const mpm_grid *grid) {
+  double least = least_reach;
+  for (int32_t order = 1; order < grid->width - 1; ++order) least *= least_reach;
+  return least;
+}
 
 static void find_stencil(const mpm_grid *grid, const mpmi_weights *W, int64_t p, stencil *to) {
   const int32_t edge = MPMI_TILE_EDGE(grid->dim, grid->width), width = grid->width;
+  const double least = least_weight(grid);
   to->count = 1;
   to->at[0] = 0;
   to->w[0] = 1.0;
   for (int32_t axis = 0; axis < grid->dim; ++axis) {
     for (int32_t n = to->count - 1; n >= 0; --n)
       for (int32_t k = width - 1; k >= 0; --k) {
+        const double w = W->w[axis][k][p];
         to->at[n * width + k] = to->at[n] * edge + k;
-        to->w[n * width + k] = to->w[n] * W->w[axis][k][p];
+        to->w[n * width + k] = to->w[n] * (w > least ? w : 0.0);
       }
     to->count *= width;
   }
-  for (int32_t n = 0; n < to->count; ++n) {
-    to->at[n] += W->node[p];
-    to->w[n] = to->w[n] > least_weight ? to->w[n] : 0.0;
-  }
+  for (int32_t n = 0; n < to->count; ++n) to->at[n] += W->node[p];
 }
 
 /* Holds one member's prescribed particles in one block, with the block's tile of sums. */
