@@ -203,9 +203,9 @@ START_TEST(faces_meet_anew) {
 }
 END_TEST
 
-/* A bar at 1 whose faces are brought to 2, one at once and the others little by little, and held there: in the
- * end it has 2 everywhere, and has gained what that takes. What is left by then falls further, with open knots
- * slowly. */
+/* A bar at 1 whose faces are brought to 2, one at once and the others little by little, and held there: in
+ * the end it has 2 everywhere, and has gained what that takes. What is left by then falls further, with open
+ * knots slowly. */
 START_TEST(changed_faces_come_through) {
   const basis_option *basis = &basis_options[_i % BASES];
   const int32_t dim = 1 + _i / BASES % 3, implicit = _i / BASES / 3, ramp = 20;
