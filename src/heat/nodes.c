@@ -35,13 +35,19 @@ double mpmi_heat_sign(const mpmi_follower *follower) {
   return follower->sign[0] * follower->sign[1] * follower->sign[2];
 }
 
+/* A value on the plane of a face, next to a tie. */
+typedef double (*plane_fn)(const mpmi_heat_job *job, const mpmi_tie *tie, int32_t face);
+
 /* Returns what a follower has beside its master's value, which the sign turns: an odd one twice the value on
- * the plane that mirrors it. plane: by axis. */
-static double base_of(const mpmi_heat_job *job, const mpmi_follower *follower, const double *plane) {
+ * the plane that mirrors it. On two cells a master has mirrors at either face. */
+static double base_of(const mpmi_heat_job *job, const mpmi_tie *tie, const mpmi_follower *follower,
+                      plane_fn value) {
   if (mpmi_heat_sign(follower) > 0.0) return 0.0;
   double sum = 0.0, odd = 0.0;
+  int64_t index[3];
+  mpmi_blocks_index(&job->step->layout->blocks, follower->slot, index);
   for (int32_t k = 0; k < job->step->settings->grid->dim; ++k)
-    if (follower->sign[k] < 0.0) sum += plane[k], odd += 1.0;
+    if (follower->sign[k] < 0.0) sum += value(job, tie, 2 * k + (index[k] > 0)), odd += 1.0;
   return 2.0 * sum / odd;
 }
 
@@ -123,17 +129,20 @@ static void untied_temperatures(void *data, int64_t task) {
   }
 }
 
+static double prescribed(const mpmi_heat_job *job, const mpmi_tie *tie, int32_t face) {
+  (void)tie;
+  return job->step->settings->heat.wall[face].temperature;
+}
+
 /* Sets a tie: by the mean of its nodes with their signs, or as it is prescribed. */
 static void tied_temperatures(const mpmi_heat_job *job, const mpmi_tie *tie) {
   const mpmi_constraints *ties = &job->heat->ties;
   const int32_t face = mpmi_heat_face(job, tie);
-  double *master = mpmi_heat_node(job->heat, tie->master), prescribed[3] = {0.0, 0.0, 0.0};
-  for (int32_t k = 0; k < job->step->settings->grid->dim; ++k)
-    if (tie->face[k] >= 0) prescribed[k] = job->step->settings->heat.wall[tie->face[k]].temperature;
+  double *master = mpmi_heat_node(job->heat, tie->master);
   double capacity = master[MPMI_HEAT_CAPACITY], sum = master[MPMI_HEAT_TEMPERATURE];
   for (int64_t i = tie->first; i < tie->first + tie->count; ++i) {
     const double *node = mpmi_heat_node(job->heat, ties->follower[i].slot);
-    const double base = base_of(job, &ties->follower[i], prescribed);
+    const double base = base_of(job, tie, &ties->follower[i], prescribed);
     capacity += node[MPMI_HEAT_CAPACITY];
     sum +=
         mpmi_heat_sign(&ties->follower[i]) * (node[MPMI_HEAT_TEMPERATURE] - node[MPMI_HEAT_CAPACITY] * base);
@@ -143,7 +152,8 @@ static void tied_temperatures(const mpmi_heat_job *job, const mpmi_tie *tie) {
   for (int64_t i = tie->first; i < tie->first + tie->count; ++i) {
     const mpmi_follower *f = &ties->follower[i];
     mpmi_heat_node(job->heat, f->slot)[MPMI_HEAT_TEMPERATURE] =
-        face >= 0 ? master[MPMI_HEAT_TEMPERATURE] : base_of(job, f, prescribed) + mpmi_heat_sign(f) * mean;
+        face >= 0 ? master[MPMI_HEAT_TEMPERATURE]
+                  : base_of(job, tie, f, prescribed) + mpmi_heat_sign(f) * mean;
   }
 }
 
@@ -230,19 +240,17 @@ static double change_at(const mpmi_heat_job *job, int32_t face, int64_t slot) {
   return tie < 0 ? 0.0 : now - job->heat->met[tie];
 }
 
+static double change_beside(const mpmi_heat_job *job, const mpmi_tie *tie, int32_t face) {
+  int32_t offset[3] = {0, 0, 0};
+  offset[face / 2] = face % 2 ? 1 : -1;
+  return change_at(job, face, mpmi_blocks_beside(&job->step->layout->blocks, tie->master, offset));
+}
+
 /* Mirrors change with the planes that they are mirrored at. */
 static void move_mirrors(const mpmi_heat_job *job, const mpmi_tie *tie) {
-  double change[3] = {0.0, 0.0, 0.0};
-  for (int32_t k = 0; k < job->step->settings->grid->dim; ++k) {
-    if (tie->face[k] < 0) continue;
-    int32_t offset[3] = {0, 0, 0};
-    offset[k] = tie->face[k] % 2 ? 1 : -1;
-    change[k] =
-        change_at(job, tie->face[k], mpmi_blocks_beside(&job->step->layout->blocks, tie->master, offset));
-  }
   for (int64_t i = tie->first; i < tie->first + tie->count; ++i) {
     const mpmi_follower *f = &job->heat->ties.follower[i];
-    mpmi_heat_flow(job->heat, f->slot)[MPMI_HEAT_INCREMENT] += base_of(job, f, change);
+    mpmi_heat_flow(job->heat, f->slot)[MPMI_HEAT_INCREMENT] += base_of(job, tie, f, change_beside);
   }
 }
 

@@ -232,6 +232,25 @@ START_TEST(changed_faces_come_through) {
 }
 END_TEST
 
+/* Two cells between faces of different temperature: one node has mirrors at both, and the field that is left
+ * is linear. */
+START_TEST(mirrors_at_both_faces) {
+  const basis_option *basis = &basis_options[_i % BASES];
+  const int32_t implicit = _i / BASES;
+  if (basis->boundary == MPM_BOUNDARY_OPEN_KNOT) return;
+  world w;
+  mpm_particles *set = open_bar(&w, 1, 2, basis, 2);
+  if (implicit) ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-14));
+  ck_ok(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 2.0));
+  ck_ok(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MAX, MPM_HEAT_WALL_TEMPERATURE, 5.0));
+  for (int32_t k = 0; k < 1000; ++k) world_step(&w, 0.5 * heat_dt(&w, 1.0));
+  double *x = fetch(&w, set, "position", 1), *T = fetch(&w, set, "temperature", 1);
+  for (int64_t p = 0; p < 4; ++p) ck_within(basis->name, T[p], 2.0 + 3.0 * x[p], 1e-6);
+  free(x), free(T);
+  world_close(&w);
+}
+END_TEST
+
 /* Nodes around a face show what is prescribed there after the step that changes it, and its mirror image. */
 START_TEST(nodes_mirror_at_the_face) {
   const double start = 1.0, later[] = {3.0, 5.0};
@@ -562,6 +581,7 @@ Suite *heat_suite(void) {
   tcase_add_loop_test(grid, faces_meet_images, 0, 4);
   tcase_add_loop_test(grid, mirrors_begin_anew, 0, 2);
   tcase_add_loop_test(grid, changed_faces_come_through, 0, 6 * BASES);
+  tcase_add_loop_test(grid, mirrors_at_both_faces, 0, 2 * BASES);
   tcase_add_loop_test(grid, nodes_mirror_at_the_face, 0, 2);
   tcase_add_loop_test(grid, linear_field_stays, 0, 6 * BASES);
   tcase_add_loop_test(grid, balance_closes, 0, 6 * BROAD);
