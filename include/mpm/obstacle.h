@@ -61,9 +61,9 @@ typedef struct mpm_distance_batch {
 
 /** Gives distances of points (mt). Points are particles, and nodes of blocks that are near the obstacle, also
  * those without material: nodes lie in the grid or up to one spacing beyond its faces, and of a grid with
- * total_lagrangian = 1 where the material has taken them. On periodic axes a point is the image nearest to the
- * centre. Returns as mpm_particle_fn does. A value that is not finite, or a normal whose length is not 1 to
- * 1e-6, ends the step: MPM_NONFINITE, MPM_E_CALLBACK. */
+ * total_lagrangian = 1 where the material has taken them. On periodic axes a point is the image nearest to
+ * the centre. Returns as mpm_particle_fn does. A value that is not finite, or a normal whose length is not 1
+ * to 1e-6, ends the step: MPM_NONFINITE, MPM_E_CALLBACK. */
 typedef mpm_status (*mpm_distance_fn)(void *user, const mpm_distance_batch *batch);
 
 /** Gives the mean velocity[3] and angular velocity[3] of the step from t over dt; both are preset to the
