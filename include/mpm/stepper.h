@@ -383,9 +383,9 @@ MPM_API mpm_status mpm_advance_desc_init(mpm_advance_desc *desc, uint32_t struct
  * itself does so in steps of any length. On failure the state is that of the last committed sub-step, and
  * the status is the cause. After max_cuts cuts in a row (60: dt is 5e-14 of what it was), or where another
  * would go below dt_min or no longer move the time, the call gives up, and mpm_last_error() says so and why
- * the last try failed; the next call begins with the dt of before the cuts. info may be NULL; it is that of the last sub-step tried. The call returns MPM_OK with t < t_end
- * when max_steps ran out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before the present time, or a
- * value is bad.
+ * the last try failed; the next call begins with the dt of before the cuts. info may be NULL; it is that of
+ * the last sub-step tried. The call returns MPM_OK with t < t_end when max_steps ran out. Errors are those
+ * of mpm_step(); MPM_E_ARG: t_end is before the present time, or a value is bad.
  */
 MPM_API mpm_status mpm_advance(mpm_stepper *stepper, const mpm_advance_desc *desc, mpm_step_info *info);
 

@@ -15,9 +15,9 @@ typedef struct stencil {
   double w[MOST_NODES];
 } stencil;
 
-/* A particle that reaches a node by no more than this share of a cell, as where the edge of its domain lies on
- * the node, reaches it by rounding, which must not decide who holds the node. Weights begin with a power of
- * that reach, the order of the basis. */
+/* A particle that reaches a node by no more than this share of a cell, as where the edge of its domain lies
+ * on the node, reaches it by rounding, which must not decide who holds the node. Weights begin with a power
+ * of that reach, the order of the basis. */
 static const double least_reach = 1e-12;
 
 static double least_weight(const mpm_grid *grid) {

@@ -326,9 +326,9 @@ void mpmi_unknowns_fold(const mpmi_balance *balance, const mpmi_nodal *forces, d
 /* Makes the pattern for the active nodes as numbered, with so many rows. */
 mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows);
 
-/* Returns the next row of the same body beside one, that shares a stencil with it and has more than some mass,
- * by the last projection; with a component c >= 0 only of rows that are free in it. -1: no more. It is met with
- * each of its nodes there; `at` begins at 0. */
+/* Returns the next row of the same body beside one, that shares a stencil with it and has more than some
+ * mass, by the last projection; with a component c >= 0 only of rows that are free in it. -1: no more. It is
+ * met with each of its nodes there; `at` begins at 0. */
 int64_t mpmi_next_beside(const mpmi_balance *balance, int64_t row, int32_t c, double above, int64_t *at);
 /* Returns the mass of the heaviest of these, or 0. */
 double mpmi_heaviest_beside(const mpmi_balance *balance, int64_t row, int32_t c);

@@ -99,8 +99,8 @@ static int32_t is_cut(const mpm_stepper *s, mpm_status status) {
          (status == MPM_OFF_GRID && mpmi_is_implicit(&s->settings));
 }
 
-/* Returns 1 where this one may be answered so. What leaves the grid in an implicit step may only have come to a
- * balance far away, or through a touch that stayed open. What moves out by itself is out at the end of all
+/* Returns 1 where this one may be answered so. What leaves the grid in an implicit step may only have come to
+ * a balance far away, or through a touch that stayed open. What moves out by itself is out at the end of all
  * these steps, and so the time does not come to the end of any. */
 static int32_t a_cut_may_help(const mpm_stepper *s, mpm_status status, double dt, leaves *left) {
   if (status == MPM_OFF_GRID) {

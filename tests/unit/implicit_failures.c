@@ -59,8 +59,8 @@ static mpm_status press_top(void *user, const mpm_node_batch *b, uint8_t *prescr
   return MPM_OK;
 }
 
-/* A straight column beyond Euler's load is in balance, but would buckle. The host is told once, and anew after
- * it has been relieved. */
+/* A straight column beyond Euler's load is in balance, but would buckle. The host is told once, and anew
+ * after it has been relieved. */
 START_TEST(column_that_would_buckle) {
   /* 4 pi^2 E' I / L^2 = 3.5 with E' = 1000 / .91; a step of .02 adds E' A .02 / L = 1.4 */
   enum { BEYOND_EULER = 3 };

@@ -18,7 +18,7 @@ static world_desc newmark_world(const newmark *of, int32_t basis, int64_t cells,
   return desc;
 }
 
-/* ---- what drives a body --------------------------------------------------------------------------------- */
+/* ---- what drives a body -------------------------------------------------------------------------------- */
 /* The mean velocity over a step of what begins at rest and accelerates by 1. */
 static mpm_status accelerate(void *user, const mpm_particle_batch *b, double *add) {
   (void)user;
@@ -31,9 +31,9 @@ static mpm_status drive(void *user, const mpm_node_batch *b, uint8_t *is_held, d
   return MPM_OK;
 }
 
-/* A body is driven along a smooth plane on which it rests: nothing resists but its inertia. Prescribed particles
- * have that themselves, and their reaction is 0; that of the host is the momentum that the body gains, and with
- * the trapezoid rule its work is the kinetic energy. */
+/* A body is driven along a smooth plane on which it rests: nothing resists but its inertia. Prescribed
+ * particles have that themselves, and their reaction is 0; that of the host is the momentum that the body
+ * gains, and with the trapezoid rule its work is the kinetic energy. */
 START_TEST(driven_along_a_plane) {
   const newmark *of = &rules[_i / 2];
   const int32_t by_host = _i % 2;
@@ -78,9 +78,9 @@ START_TEST(driven_along_a_plane) {
 }
 END_TEST
 
-/* ---- walls ---------------------------------------------------------------------------------------------- */
-/* An obstacle presses a thin layer onto a fixed wall, and reaches nodes that the wall mirrors. With gamma = 1 what
- * particles gain is what acts at the end of the step. */
+/* ---- walls --------------------------------------------------------------------------------------------- */
+/* An obstacle presses a thin layer onto a fixed wall, and reaches nodes that the wall mirrors. With gamma = 1
+ * what particles gain is what acts at the end of the step. */
 START_TEST(layer_on_a_wall) {
   static const int32_t bases[] = {MPM_BSPLINE2, MPM_BSPLINE3, MPM_GIMP};
   const newmark of = {1.0, (double[]){0.5, 0.5625, 1.0}[_i / 6]};
@@ -117,9 +117,9 @@ START_TEST(layer_on_a_wall) {
 }
 END_TEST
 
-/* ---- symmetry ------------------------------------------------------------------------------------------- */
-/* A block that is symmetric about the middle of the grid falls straight on a smooth wall. It reaches over to rows
- * of nodes that have hardly any of its mass. */
+/* ---- symmetry ------------------------------------------------------------------------------------------ */
+/* A block that is symmetric about the middle of the grid falls straight on a smooth wall. It reaches over to
+ * rows of nodes that have hardly any of its mass. */
 START_TEST(symmetric_block) {
   enum { EDGE = 8, COUNT = EDGE * EDGE * EDGE };
   const double h = 0.125, apart = 0.5 * h, middle = 5.0 * h, volume = apart * apart * apart;

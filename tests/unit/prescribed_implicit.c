@@ -141,8 +141,8 @@ START_TEST(images_couple) {
 }
 END_TEST
 
-/* What walls and a surface hold together they hold whole: their reactions balance the load, and with inertia and
- * gamma = 1 what the particles gain. */
+/* What walls and a surface hold together they hold whole: their reactions balance the load, and with inertia
+ * and gamma = 1 what the particles gain. */
 START_TEST(beside_a_wall) {
   static const double betas[] = {0.5, 0.5625, 1.0};
   const int32_t dynamic = _i > 0;

@@ -431,9 +431,10 @@ static mpm_status hold_top(void *user, const mpm_node_batch *b, uint8_t *is_held
   return MPM_OK;
 }
 
-/* A block on a fixed wall under a platen of law rigid that fills the grid up to another wall, quasi-static: whoever
- * moves the platen carries its weight and what is applied to it, on nodes too that it alone reaches. A prescribed
- * platen reports the block, and works on it alone, whatever it weighs; of the host all reactions carry all. */
+/* A block on a fixed wall under a platen of law rigid that fills the grid up to another wall, quasi-static:
+ * whoever moves the platen carries its weight and what is applied to it, on nodes too that it alone reaches.
+ * A prescribed platen reports the block, and works on it alone, whatever it weighs; of the host all reactions
+ * carry all. */
 START_TEST(heavy_platen) {
   const int32_t by_host = _i % 2, walled = _i / 2 % 2;
   const double h = 0.125, g = -1.0, applied = -0.5, top[2] = {5.0 * h, -0.01};
