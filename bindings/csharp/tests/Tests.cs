@@ -475,7 +475,7 @@ namespace Mpm {
         Throws<ArgumentException>(() => face.Add(new[] { 0.5, 0.5 }, new double[4]), "area");
         Throws<ArgumentException>(() => face.Set("traction", new double[16]), "values");
         Throws<ArgumentException>(() => face.Get<float>("force"), "type");
-        Refuses(MPM_E_ARG, "in the grid", () => face.Add(new[] { -0.5, 0.5 }));
+        Refuses(MPM_E_ARG, "inside the grid", () => face.Add(new[] { -0.5, 0.5 }));
         Refuses(MPM_E_ARG, "force", () => face.Set("force", new double[32]));
         Refuses(MPM_E_ARG, "F64", () => face.Get<long>("force"));
         Refuses(MPM_E_NOT_FOUND, "force", () => face.Get<double>("forse"));

@@ -279,7 +279,7 @@ fn surfaces() {
     for (error, status, text) in [
         (face.add(&[0.5; 3], None).unwrap_err(), MPM_E_ARG, "position"),
         (face.add(&[0.5; 2], Some(&[0.0; 4])).unwrap_err(), MPM_E_ARG, "area"),
-        (face.add(&[-0.5; 2], None).unwrap_err(), MPM_E_ARG, "in the grid"),
+        (face.add(&[-0.5; 2], None).unwrap_err(), MPM_E_ARG, "inside the grid"),
         (face.add_triangles(&[0.5; 9], &[0, 1, 2], 0.1).unwrap_err(), MPM_E_UNSUPPORTED, ""),
         (face.get::<f64>("forse").unwrap_err(), MPM_E_NOT_FOUND, "force"),
         (face.get::<i64>("force").unwrap_err(), MPM_E_ARG, "force"),
