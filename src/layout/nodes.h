@@ -106,8 +106,7 @@ typedef struct mpmi_tie_state {
   double before[3];    /* what the master gave to particles before folding, by mass */
   double increment[3]; /* of the master's velocity before folding */
   double recorded[3];  /* impulse that is recorded already; in the end what the walls got beside */
-  double
-      mirrored[3]; /* force by which the tie gets more than surfaces give its nodes: mirror images turn it */
+  double mirrored[3];  /* what mirror images add to the forces of surfaces by turning them round */
 } mpmi_tie_state;
 
 /* State of a contact with a friction wall, as it was found with forces; projections without them keep to
