@@ -66,7 +66,7 @@ enum mpm_reduce_value {
 /** Bytes for, or from, another part. */
 typedef struct mpm_message {
   int32_t part;     /**< to whom, or from whom */
-  int32_t reserved; /**< 0 */
+  int32_t reserved; /**< 0; not looked at in what arrives */
   int64_t bytes;    /**< how many; 0 is sent too where the partner is known */
   /** out: the library's, unchanged until mpm_receive_fn returns; in: the host's, at a multiple of 64, valid
    * until the next mpm_send_fn. */

@@ -90,7 +90,8 @@ typedef struct mpmi_outer {
 } mpmi_outer;
 typedef struct mpmi_outer_term {
   int32_t row;
-  double share;
+  double share[3]; /* by component: what a slip wall mirrors has the other sign across it */
+  int32_t face[3]; /* of that wall, or -1 */
 } mpmi_outer_term;
 
 /* What one task assembles with; component arrays have the length of the longest batch. */

@@ -51,7 +51,7 @@ void mpmi_condense_forces(const mpmi_balance *balance, double *vector) {
       double *from = &vector[(int64_t)newton->outer[i].row * dim + c];
       if (!moves_with(newton, &newton->outer[i], c)) continue;
       for (int64_t t = mpmi_first_term(newton, i); t < newton->outer[i].end; ++t)
-        vector[(int64_t)newton->term[t].row * dim + c] += newton->term[t].share * *from;
+        vector[(int64_t)newton->term[t].row * dim + c] += newton->term[t].share[c] * *from;
       *from = 0.0;
     }
 }
@@ -64,7 +64,7 @@ void mpmi_condense_extend(const mpmi_balance *balance, double *vector) {
       if (!moves_with(newton, &newton->outer[i], c)) continue;
       double sum = 0.0;
       for (int64_t t = mpmi_first_term(newton, i); t < newton->outer[i].end; ++t)
-        sum += newton->term[t].share * vector[(int64_t)newton->term[t].row * dim + c];
+        sum += newton->term[t].share[c] * vector[(int64_t)newton->term[t].row * dim + c];
       vector[(int64_t)newton->outer[i].row * dim + c] = sum;
     }
 }
@@ -78,7 +78,7 @@ static void add_row(mpmi_newton *newton, const mpmi_outer *outer, const mpmi_out
     double *to = A->value + mpmi_matrix_entry(A, term->row, A->column[e]) * dim * dim;
     for (int32_t c = 0; c < dim; ++c)
       for (int32_t k = 0; k < dim && moves_with(newton, outer, c); ++k)
-        to[c * dim + k] += term->share * from[c * dim + k];
+        to[c * dim + k] += term->share[c] * from[c * dim + k];
   }
 }
 
@@ -95,7 +95,7 @@ static void add_columns(mpmi_newton *newton, int64_t i) {
       double *to = A->value + mpmi_matrix_entry(A, row, newton->term[t].row) * dim * dim;
       for (int32_t c = 0; c < dim; ++c)
         for (int32_t k = 0; k < dim && moves_with(newton, outer, c); ++k)
-          to[k * dim + c] += newton->term[t].share * from[k * dim + c];
+          to[k * dim + c] += newton->term[t].share[c] * from[k * dim + c];
     }
   }
 }

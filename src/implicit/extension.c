@@ -28,13 +28,52 @@ typedef struct search {
 /* Two inner nodes on a line with the outer one. */
 typedef struct line {
   int32_t row[2];
+  int32_t face[2][3]; /* by which each is mirrored along an axis, or -1 */
   double share[2], quality;
 } line;
 
-static int64_t beside(const search *s, int64_t slot, const int32_t *direction, int32_t steps) {
+/* Returns 1 where a wall is a plane of symmetry. Open knots have none: they differ on its two sides. */
+static int32_t mirrors(const mpmi_settings *settings, int32_t face) {
+  return settings->grid->family < MPMI_FAMILY_OPEN_BSPLINE2 &&
+         mpmi_wall_kind_of(settings->wall[face].kind)->holds == MPMI_HOLDS_NORMAL;
+}
+
+/* Returns how many nodes beyond the plane of a face a node is. */
+static int64_t beyond(const mpm_grid *grid, int32_t face, int64_t index) {
+  return face % 2 ? index - mpmi_face_node(grid, face) : mpmi_face_node(grid, face) - index;
+}
+
+/* Returns the slot some steps away, or -1. Beyond a slip wall that is the slot of the mirrored node, which
+ * moves the other way across the wall. */
+static int64_t beside(const search *s, int64_t slot, const int32_t *direction, int32_t steps,
+                      int32_t *mirror) {
+  const mpmi_settings *settings = s->balance->settings;
+  int64_t index[3] = {0};
   int32_t offset[3] = {0, 0, 0};
-  for (int32_t k = 0; k < s->balance->settings->grid->dim; ++k) offset[k] = steps * direction[k];
+  mpmi_blocks_index(&s->balance->layout->blocks, slot, index);
+  for (int32_t k = 0; k < settings->grid->dim; ++k) {
+    offset[k] = steps * direction[k];
+    mirror[k] = -1;
+    for (int32_t face = 2 * k; face < 2 * k + 2; ++face) {
+      const int64_t far = mirrors(settings, face) ? beyond(settings->grid, face, index[k] + offset[k]) : 0;
+      if (far <= 0) continue;
+      offset[k] += (int32_t)(face % 2 ? -2 * far : 2 * far);
+      mirror[k] = face;
+    }
+  }
   return mpmi_blocks_around(&s->balance->layout->blocks, slot, offset);
+}
+
+/* Returns how many times the body lies around a node, with its mirror images: twice for each slip wall on
+ * whose plane the node is. */
+static double copies_of(const search *s, int64_t slot) {
+  const mpmi_settings *settings = s->balance->settings;
+  int64_t index[3] = {0};
+  double copies = 1.0;
+  mpmi_blocks_index(&s->balance->layout->blocks, slot, index);
+  for (int32_t face = 0; face < 2 * settings->grid->dim; ++face)
+    if (mirrors(settings, face) && beyond(settings->grid, face, index[face / 2]) == 0) copies *= 2.0;
+  return copies;
 }
 
 static void sum_stiffness(search *s, int64_t rows) {
@@ -42,7 +81,7 @@ static void sum_stiffness(search *s, int64_t rows) {
   memset(s->stiffness, 0, (size_t)rows * sizeof *s->stiffness);
   for (int64_t i = 0; i < newton->active_count; ++i) {
     const mpmi_active_node *node = &newton->active[i];
-    s->stiffness[node->row] += *mpmi_mass(&newton->external, node->slot);
+    s->stiffness[node->row] += *mpmi_mass(&newton->external, node->slot) * copies_of(s, node->slot);
     if (mpmi_master_of(s->balance, node->slot) == node->slot) s->slot[node->row] = node->slot;
   }
 }
@@ -68,6 +107,17 @@ static int32_t is_weak(const search *s, int64_t row, double largest) {
   }
 }
 
+/* Returns 1 where a component is 0 by symmetry: across the slip wall on whose plane the node lies. */
+static int32_t is_zero(const search *s, int64_t slot, int32_t c) {
+  const mpm_grid *grid = s->balance->settings->grid;
+  int64_t index[3] = {0};
+  mpmi_blocks_index(&s->balance->layout->blocks, slot, index);
+  for (int32_t face = 2 * c; face < 2 * c + 2; ++face)
+    if (mirrors(s->balance->settings, face) && beyond(grid, face, index[c]) == 0)
+      return mpmi_holder_of(s->balance, slot, c) == MPMI_ROW_WALL;
+  return 0;
+}
+
 /* Returns the row of an inner node in a slot that is free where `row` is, or -1. Images with other signs are
  * left out. */
 static int32_t inner_row(const search *s, int64_t slot, int64_t row) {
@@ -77,7 +127,8 @@ static int32_t inner_row(const search *s, int64_t slot, int64_t row) {
   if (!node->plain || node->row == row || newton->outer_of[node->row] >= 0) return -1;
   for (int32_t c = 0; c < s->balance->settings->grid->dim; ++c)
     if (mpmi_holder_of(s->balance, s->slot[row], c) == MPMI_ROW_FREE &&
-        mpmi_holder_of(s->balance, s->slot[node->row], c) != MPMI_ROW_FREE)
+        mpmi_holder_of(s->balance, s->slot[node->row], c) != MPMI_ROW_FREE &&
+        !is_zero(s, s->slot[node->row], c))
       return -1;
   return node->row;
 }
@@ -113,10 +164,10 @@ static int32_t find_shares(const search *s, int64_t row, const int32_t *directio
 static int32_t find_line(const search *s, int64_t row, const int32_t *direction, line *to) {
   int32_t length = 0, steps = 1;
   for (int32_t k = 0; k < s->balance->settings->grid->dim; ++k) length += direction[k] * direction[k];
-  int64_t slot[2] = {beside(s, s->slot[row], direction, 1), -1};
+  int64_t slot[2] = {beside(s, s->slot[row], direction, 1, to->face[0]), -1};
   for (; steps < MOST_STEPS && is_outer_node(s, slot[0]); ++steps)
-    slot[0] = beside(s, s->slot[row], direction, steps + 1);
-  slot[1] = beside(s, s->slot[row], direction, steps + 1);
+    slot[0] = beside(s, s->slot[row], direction, steps + 1, to->face[0]);
+  slot[1] = beside(s, s->slot[row], direction, steps + 1, to->face[1]);
   for (int32_t i = 0; i < 2; ++i)
     if ((to->row[i] = inner_row(s, slot[i], row)) < 0) return 0;
   if (to->row[0] == to->row[1] || !find_shares(s, row, direction, steps, to)) return 0;
@@ -153,7 +204,10 @@ static mpm_status add_outer(search *s, int64_t row) {
       if (status) break;
       mpmi_outer_term *term = &newton->term[newton->term_count++];
       keep(s, newton->term_count <= s->terms_before, &term->row, found[n].row[i]);
-      term->share = found[n].share[i] / good; /* follows from the rows */
+      for (int32_t c = 0; c < dim; ++c) { /* follows from the rows */
+        term->face[c] = found[n].face[i][c];
+        term->share[c] = (term->face[c] < 0 ? 1.0 : -1.0) * found[n].share[i] / good;
+      }
     }
   if (status) return status;
   mpmi_outer *outer = &newton->outer[newton->outer_count++];

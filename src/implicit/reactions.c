@@ -51,6 +51,34 @@ static double extension_on(const mpmi_balance *balance, int64_t row, int32_t c) 
   return force;
 }
 
+/* Lets a slip wall have what it gives to an outer row by one of the inner ones: all of the share where the
+ * wall holds that one, and twice as much where it mirrors it, for the other half of the body has the rest. */
+static void record_mirror(mpmi_balance *balance, const mpmi_outer *outer, const mpmi_outer_term *term,
+                          int32_t c) {
+  const mpmi_newton *newton = balance->newton;
+  const mpmi_constraints *constraints = &balance->layout->constraints;
+  const int64_t inner = newton->master[term->row];
+  const int32_t held = mpmi_is_held(newton->matrix.held[(int64_t)term->row * newton->matrix.block + c]);
+  if (!held && term->face[c] < 0) return;
+  const int32_t face = held ? constraints->tie[constraints->tie_of[inner]].face[c] : term->face[c];
+  const double share = term->face[c] < 0 ? term->share[c] : -term->share[c];
+  const double impulse =
+      balance->step->dt * (held ? share : 2.0 * share) * extension_on(balance, outer->row, c);
+  balance->nodes->impulse[held ? inner : newton->master[outer->row]].given[c] += impulse;
+  if (mpmi_is_own_row(&newton->matrix, outer->row))
+    mpmi_exact_add(&balance->step->work->tally.sum[MPMI_TALLY_FACES + 3 * face + c], impulse);
+}
+
+static void record_mirrors(mpmi_balance *balance) {
+  const mpmi_newton *newton = balance->newton;
+  const int32_t dim = newton->matrix.block;
+  for (int64_t i = 0; i < newton->outer_count; ++i)
+    for (int64_t t = mpmi_first_term(newton, i); t < newton->outer[i].end; ++t)
+      for (int32_t c = 0; c < dim; ++c)
+        if (newton->matrix.held[(int64_t)newton->outer[i].row * dim + c] == MPMI_ROW_OUTER)
+          record_mirror(balance, &newton->outer[i], &newton->term[t], c);
+}
+
 /* Friction walls are surfaces, and nodes that they push have no other holder there. */
 static void record_friction_walls(mpmi_balance *balance) {
   const mpmi_contact_nodes *contact = &balance->nodes->contact;
@@ -150,6 +178,7 @@ mpm_status mpmi_record_reactions(mpmi_balance *balance) {
   if (slots) memset(balance->nodes->impulse, 0, (size_t)slots * sizeof *balance->nodes->impulse);
   for (int64_t r = 0; r < balance->newton->matrix.rows; ++r)
     for (int32_t c = 0; c < balance->settings->grid->dim; ++c) record_row(balance, r, c);
+  record_mirrors(balance);
   for (int64_t i = 0; i < slots && balance->newton->carries_loads; ++i)
     for (int32_t c = 0; c < balance->settings->grid->dim; ++c)
       if (balance->newton->active_of[i] < 0 && mpmi_master_of(balance, i) == i) record_carried(balance, i, c);
