@@ -144,6 +144,7 @@ void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, newton->led_start, newton->led_start_capacity);
   MPMI_FREE_ARRAY(c, newton->led, newton->led_capacity);
   MPMI_FREE_ARRAY(c, newton->master, newton->master_capacity);
+  MPMI_FREE_ARRAY(c, newton->copies, newton->copies_capacity);
   MPMI_FREE_ARRAY(c, newton->columns, newton->columns_capacity);
   MPMI_FREE_ARRAY(c, newton->diagonal, newton->diagonal_capacity);
   MPMI_FREE_ARRAY(c, newton->mass, newton->mass_capacity);

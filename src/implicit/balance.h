@@ -146,10 +146,12 @@ typedef struct mpmi_newton {
   int64_t outer_count, outer_capacity, term_count, term_capacity;
   mpmi_outer *outer;
   mpmi_outer_term *term;
-  int64_t outer_of_capacity, led_start_capacity, led_capacity, master_capacity, columns_capacity;
+  int64_t outer_of_capacity, led_start_capacity, led_capacity, master_capacity, copies_capacity,
+      columns_capacity;
   int32_t *outer_of;        /* [rows] outer row, or -1 */
   int64_t *led_start, *led; /* outer rows by the inner ones that they move with */
   int64_t *master;          /* [rows] slot of the node behind a row */
+  double *copies;           /* [rows] mpmi_copies_of */
   int32_t *columns;         /* [tasks] those of a row that is being listed */
   int64_t diagonal_capacity;
   int64_t *diagonal; /* [rows] entry */
@@ -326,13 +328,8 @@ void mpmi_unknowns_fold(const mpmi_balance *balance, const mpmi_nodal *forces, d
 /* ---- pattern.c --------------------------------------------------------------------------------------- */
 /* Makes the pattern for the active nodes as numbered, with so many rows. */
 mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows);
-
-/* Returns the next row of the same body beside one, that shares a stencil with it and has more than some
- * mass, by the last projection; with a component c >= 0 only of rows that are free in it. -1: no more. It is
- * met with each of its nodes there; `at` begins at 0. */
-int64_t mpmi_next_beside(const mpmi_balance *balance, int64_t row, int32_t c, double above, int64_t *at);
-/* Returns the mass of the heaviest of these, or 0. */
-double mpmi_heaviest_beside(const mpmi_balance *balance, int64_t row, int32_t c);
+/* Writes the offset from a node of number `index` of those that couple with it, in the order of `place`. */
+void mpmi_offset_of(const mpmi_balance *balance, int32_t index, int32_t *offset);
 
 /* ---- assembly.c -------------------------------------------------------------------------------------- */
 /* Computes the external forces; their fourth value tells the nodes that have stiffness. */

@@ -1,5 +1,6 @@
 /* What contact did in an implicit step, as the sweeps of explicit steps tell it. */
 #include "implicit/active_set.h"
+#include "implicit/beside.h"
 #include "implicit/trouble.h"
 #include "boundary/bound.h"
 
@@ -43,11 +44,10 @@ static int32_t may_slide(const mpmi_balance *balance, const mpmi_constraint *of,
   const mpmi_contact_nodes *contact = &balance->nodes->contact;
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
   const mpmi_party *first = &contact->party[touch->party[0]];
-  const double *mass = balance->newton->mass;
   int32_t light = mpmi_inner(of->force, touch->normal) <= pushes_at_all * most_force;
   for (int32_t i = 0; i < 2; ++i) {
     const double beside = of->row[i] < 0 ? 0.0 : mpmi_heaviest_beside(balance, of->row[i], -1);
-    light |= beside > 0.0 && mass[of->row[i]] <= weighs_at_all * beside;
+    light |= beside > 0.0 && mpmi_whole_mass(balance, of->row[i]) <= weighs_at_all * beside;
   }
   return light || !of->closed || mpmi_is_tie(balance, of) || touch->rule->normal == MPM_NORMAL_FIXED ||
          (first->surface >= 0 && contact->surface[first->surface].shape == MPM_SHAPE_PLANE);

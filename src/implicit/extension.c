@@ -4,6 +4,7 @@
  * of all forces. Alone such rows have motions that strain no particle: one particle that comes into reach of
  * a row of nodes has four numbers in 2-D, and the nodes six. */
 #include "implicit/extension.h"
+#include "implicit/beside.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,48 +33,12 @@ typedef struct line {
   double share[2], quality;
 } line;
 
-/* Returns 1 where a wall is a plane of symmetry. Open knots have none: they differ on its two sides. */
-static int32_t mirrors(const mpmi_settings *settings, int32_t face) {
-  return settings->grid->family < MPMI_FAMILY_OPEN_BSPLINE2 &&
-         mpmi_wall_kind_of(settings->wall[face].kind)->holds == MPMI_HOLDS_NORMAL;
-}
-
-/* Returns how many nodes beyond the plane of a face a node is. */
-static int64_t beyond(const mpm_grid *grid, int32_t face, int64_t index) {
-  return face % 2 ? index - mpmi_face_node(grid, face) : mpmi_face_node(grid, face) - index;
-}
-
-/* Returns the slot some steps away, or -1. Beyond a slip wall that is the slot of the mirrored node, which
- * moves the other way across the wall. */
+/* Returns the slot some steps away, or -1. */
 static int64_t beside(const search *s, int64_t slot, const int32_t *direction, int32_t steps,
                       int32_t *mirror) {
-  const mpmi_settings *settings = s->balance->settings;
-  int64_t index[3] = {0};
   int32_t offset[3] = {0, 0, 0};
-  mpmi_blocks_index(&s->balance->layout->blocks, slot, index);
-  for (int32_t k = 0; k < settings->grid->dim; ++k) {
-    offset[k] = steps * direction[k];
-    mirror[k] = -1;
-    for (int32_t face = 2 * k; face < 2 * k + 2; ++face) {
-      const int64_t far = mirrors(settings, face) ? beyond(settings->grid, face, index[k] + offset[k]) : 0;
-      if (far <= 0) continue;
-      offset[k] += (int32_t)(face % 2 ? -2 * far : 2 * far);
-      mirror[k] = face;
-    }
-  }
-  return mpmi_blocks_around(&s->balance->layout->blocks, slot, offset);
-}
-
-/* Returns how many times the body lies around a node, with its mirror images: twice for each slip wall on
- * whose plane the node is. */
-static double copies_of(const search *s, int64_t slot) {
-  const mpmi_settings *settings = s->balance->settings;
-  int64_t index[3] = {0};
-  double copies = 1.0;
-  mpmi_blocks_index(&s->balance->layout->blocks, slot, index);
-  for (int32_t face = 0; face < 2 * settings->grid->dim; ++face)
-    if (mirrors(settings, face) && beyond(settings->grid, face, index[face / 2]) == 0) copies *= 2.0;
-  return copies;
+  for (int32_t k = 0; k < s->balance->settings->grid->dim; ++k) offset[k] = steps * direction[k];
+  return mpmi_node_beside(s->balance, slot, offset, mirror);
 }
 
 static void sum_stiffness(search *s, int64_t rows) {
@@ -81,8 +46,11 @@ static void sum_stiffness(search *s, int64_t rows) {
   memset(s->stiffness, 0, (size_t)rows * sizeof *s->stiffness);
   for (int64_t i = 0; i < newton->active_count; ++i) {
     const mpmi_active_node *node = &newton->active[i];
-    s->stiffness[node->row] += *mpmi_mass(&newton->external, node->slot) * copies_of(s, node->slot);
-    if (mpmi_master_of(s->balance, node->slot) == node->slot) s->slot[node->row] = node->slot;
+    const double copies = mpmi_copies_of(s->balance, node->slot);
+    s->stiffness[node->row] += *mpmi_mass(&newton->external, node->slot) * copies;
+    if (mpmi_master_of(s->balance, node->slot) != node->slot) continue;
+    s->slot[node->row] = node->slot;
+    newton->copies[node->row] = copies;
   }
 }
 
@@ -107,17 +75,6 @@ static int32_t is_weak(const search *s, int64_t row, double largest) {
   }
 }
 
-/* Returns 1 where a component is 0 by symmetry: across the slip wall on whose plane the node lies. */
-static int32_t is_zero(const search *s, int64_t slot, int32_t c) {
-  const mpm_grid *grid = s->balance->settings->grid;
-  int64_t index[3] = {0};
-  mpmi_blocks_index(&s->balance->layout->blocks, slot, index);
-  for (int32_t face = 2 * c; face < 2 * c + 2; ++face)
-    if (mirrors(s->balance->settings, face) && beyond(grid, face, index[c]) == 0)
-      return mpmi_holder_of(s->balance, slot, c) == MPMI_ROW_WALL;
-  return 0;
-}
-
 /* Returns the row of an inner node in a slot that is free where `row` is, or -1. Images with other signs are
  * left out. */
 static int32_t inner_row(const search *s, int64_t slot, int64_t row) {
@@ -128,7 +85,7 @@ static int32_t inner_row(const search *s, int64_t slot, int64_t row) {
   for (int32_t c = 0; c < s->balance->settings->grid->dim; ++c)
     if (mpmi_holder_of(s->balance, s->slot[row], c) == MPMI_ROW_FREE &&
         mpmi_holder_of(s->balance, s->slot[node->row], c) != MPMI_ROW_FREE &&
-        !is_zero(s, s->slot[node->row], c))
+        !mpmi_is_zero(s->balance, s->slot[node->row], c))
       return -1;
   return node->row;
 }
@@ -243,6 +200,7 @@ mpm_status mpmi_extension_find(mpmi_balance *balance, int64_t rows, int32_t *cha
               .terms_before = newton->term_count};
   mpm_status status = MPMI_RESERVE_MORE(c, newton->outer_of, newton->outer_of_capacity, rows + 1);
   if (!status) status = MPMI_RESERVE_MORE(c, newton->master, newton->master_capacity, rows + 1);
+  if (!status) status = MPMI_RESERVE_MORE(c, newton->copies, newton->copies_capacity, rows + 1);
   if (status) return status;
   s.slot = newton->master;
   sum_stiffness(&s, rows);

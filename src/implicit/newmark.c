@@ -1,5 +1,6 @@
 #include "implicit/newmark.h"
 #include "implicit/active_set.h"
+#include "implicit/beside.h"
 #include "implicit/extension.h"
 #include "implicit/surface_springs.h"
 #include "boundary/boundary.h"
@@ -116,11 +117,14 @@ static void give_to_heaviest(const mpmi_balance *balance, int64_t at, double mos
   const mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim, c = (int32_t)(at % dim);
   const double above = most * (1.0 - alike);
-  int64_t count = 0, next = 0, other;
-  while (mpmi_next_beside(balance, at / dim, c, above, &next) >= 0) ++count;
+  int64_t other;
+  int32_t count = 0, next = 0;
+  double sign;
+  while (mpmi_next_beside(balance, at / dim, c, above, &next, &sign) >= 0) ++count;
   next = 0;
-  while ((other = mpmi_next_beside(balance, at / dim, c, above, &next)) >= 0)
-    newton->vector[MPMI_A0][other * dim + c] += force / (double)count / newton->mass[other];
+  while ((other = mpmi_next_beside(balance, at / dim, c, above, &next, &sign)) >= 0)
+    if (!mpmi_is_held(newton->matrix.held[other * dim + c]))
+      newton->vector[MPMI_A0][other * dim + c] += sign * force / (double)count / newton->mass[other];
 }
 
 /* Light rows, where f / m is rough, take the accelerations of the particles, and the rest of their force
@@ -133,7 +137,7 @@ static void smooth_light_rows(mpmi_balance *balance, const double *of_particles)
     if (mpmi_is_held(newton->matrix.held[at])) continue;
     const double mass = newton->mass[at / dim],
                  most = mpmi_heaviest_beside(balance, at / dim, (int32_t)(at % dim));
-    if (!(most > 0.0) || mass > light_row * most) continue;
+    if (!(most > 0.0) || mpmi_whole_mass(balance, at / dim) > light_row * most) continue;
     give_to_heaviest(balance, at, most, mass * (start[at] - of_particles[at]));
     start[at] = of_particles[at];
   }

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void offset_of(const mpmi_balance *balance, int32_t index, int32_t *offset) {
+void mpmi_offset_of(const mpmi_balance *balance, int32_t index, int32_t *offset) {
   const int32_t span = mpmi_coupling_span(balance->settings), reach = 2 * span - 1;
   for (int32_t k = balance->settings->grid->dim - 1; k >= 0; --k) {
     offset[k] = index % reach - (span - 1);
@@ -38,7 +38,7 @@ static void neighbours_task(void *data, int64_t k) {
   const mpmi_share share = mpmi_share_of(balance->settings, newton->active_count, k);
   for (int32_t o = 0; o < newton->offsets; ++o) {
     int32_t offset[3];
-    offset_of(balance, o, offset);
+    mpmi_offset_of(balance, o, offset);
     for (int64_t i = share.begin; i < share.end; ++i) {
       const int64_t slot = mpmi_blocks_beside(&balance->layout->blocks, newton->active[i].slot, offset);
       const int32_t other = slot < 0 ? -1 : newton->active_of[slot];
@@ -231,47 +231,4 @@ mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows) {
     return status;
   ++A->pattern_id;
   return MPM_OK;
-}
-
-static int32_t body_of_row(const mpmi_balance *balance, int64_t row) {
-  const mpmi_newton *newton = balance->newton;
-  const mpmi_blocks *b = &balance->layout->blocks;
-  return b->body[newton->active[newton->members[newton->members_start[row]]].slot / b->nodes];
-}
-
-/* Returns the row of the node at an offset from an active one, or -1. Of several parts rows that are not to
- * be complete have no entries for it. */
-static int64_t row_beside(const mpmi_balance *balance, int64_t active, int32_t o) {
-  const mpmi_newton *newton = balance->newton;
-  const int32_t entry = newton->place[active * newton->offsets + o];
-  int32_t offset[3];
-  if (mpmi_is_kept(newton, newton->active[active].row)) return entry < 0 ? -1 : newton->matrix.column[entry];
-  offset_of(balance, o, offset);
-  const int64_t slot = mpmi_blocks_beside(&balance->layout->blocks, newton->active[active].slot, offset);
-  const int32_t other = slot < 0 ? -1 : newton->active_of[slot];
-  return other < 0 ? -1 : newton->active[other].row;
-}
-
-int64_t mpmi_next_beside(const mpmi_balance *balance, int64_t row, int32_t c, double above, int64_t *at) {
-  const mpmi_newton *newton = balance->newton;
-  const mpmi_matrix *A = &newton->matrix;
-  const int64_t first = newton->members_start[row],
-                count = (newton->members_start[row + 1] - first) * newton->offsets;
-  while (*at < count) {
-    const int64_t member = newton->members[first + *at / newton->offsets];
-    const int64_t other = row_beside(balance, member, (int32_t)(*at % newton->offsets));
-    ++*at;
-    if (other >= 0 && other != row && newton->mass[other] > above &&
-        !(c >= 0 && mpmi_is_held(A->held[other * A->block + c])) &&
-        body_of_row(balance, other) == body_of_row(balance, row))
-      return other;
-  }
-  return -1;
-}
-
-double mpmi_heaviest_beside(const mpmi_balance *balance, int64_t row, int32_t c) {
-  double most = 0.0;
-  int64_t at = 0, other;
-  while ((other = mpmi_next_beside(balance, row, c, most, &at)) >= 0) most = balance->newton->mass[other];
-  return most;
 }
