@@ -17,11 +17,22 @@
 /* Constraints hold to this, in spacings. */
 #define MPMI_CONTACT_HOLDS_TO 1e-8
 
+/* Returns how much more of a contact force the balance has: mass_damping acts on the velocity at the end of
+ * the step, which that force changes by (2 beta - gamma) dt / m beyond Newmark's rule. With 2 beta >= gamma
+ * displacements make up for that (mpmi_damping_excess). */
+static inline double mpmi_contact_in_balance(const mpmi_balance *balance) {
+  const mpm_stepper_desc *desc = &balance->settings->desc;
+  const double below = desc->newmark_gamma - 2.0 * desc->newmark_beta;
+  return below > 0.0 ? 1.0 + desc->mass_damping * balance->step->dt * below : 1.0;
+}
+
 /* Returns the share of a contact force in the balance that bodies get as momentum. The balance is that of
  * displacements; the force of contact acts wholly at the end of the step (Kane, Repetto, Ortiz & Marsden
  * 1999), with dt^2 / 2 on displacements and dt on velocities. */
-static inline double mpmi_contact_share(const mpmi_settings *settings) {
-  return mpmi_is_dynamic(settings) ? 2.0 * settings->desc.newmark_beta : 1.0;
+static inline double mpmi_contact_share(const mpmi_balance *balance) {
+  return mpmi_is_dynamic(balance->settings)
+             ? 2.0 * mpmi_damped_beta(balance) / mpmi_contact_in_balance(balance)
+             : 1.0;
 }
 
 /* ---- small parts --------------------------------------------------------------------------------------- */

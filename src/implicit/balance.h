@@ -232,17 +232,34 @@ static inline uint8_t mpmi_holder_of(const mpmi_balance *balance, int64_t slot, 
   return tie >= 0 && balance->layout->constraints.tie[tie].zero[c] ? MPMI_ROW_WALL : MPMI_ROW_FREE;
 }
 
+/* Returns e = a dt (2 beta - gamma) / 2, or 0 where 2 beta < gamma: e dt (v' - v) is what a displacement has
+ * beyond Newmark's rule. So damping moves by half of its impulse, as a force of contact does, and what rests
+ * in contact stays at rest. */
+static inline double mpmi_damping_excess(const mpmi_balance *balance) {
+  const mpm_stepper_desc *desc = &balance->settings->desc;
+  const double beyond = 2.0 * desc->newmark_beta - desc->newmark_gamma;
+  return beyond > 0.0 ? 0.5 * desc->mass_damping * balance->step->dt * beyond : 0.0;
+}
+
+/* Returns the weight of the acceleration at the end in the displacement of a component that is damped. */
+static inline double mpmi_damped_beta(const mpmi_balance *balance) {
+  const mpm_stepper_desc *desc = &balance->settings->desc;
+  return desc->newmark_beta + mpmi_damping_excess(balance) * desc->newmark_gamma;
+}
+
 /* Returns the acceleration that belongs to a displacement, by component of the vectors; on walls it is 0. */
 static inline double mpmi_newmark_acceleration(const mpmi_balance *balance, int64_t at) {
   const mpmi_newton *newton = balance->newton;
-  const double beta = balance->settings->desc.newmark_beta, dt = balance->step->dt;
+  const double beta = balance->settings->desc.newmark_beta, gamma = balance->settings->desc.newmark_gamma;
+  const double dt = balance->step->dt;
   const uint8_t held = newton->matrix.held[at];
+  const double excess = mpmi_is_held(held) ? 0.0 : mpmi_damping_excess(balance);
   if (held == MPMI_ROW_WALL ||
       (held == MPMI_ROW_PRESCRIBED && balance->settings->desc.boundary_zero_acceleration))
     return 0.0;
   return (newton->vector[MPMI_U][at] - dt * newton->vector[MPMI_V0][at] -
-          dt * dt * (0.5 - beta) * newton->vector[MPMI_A0][at]) /
-         (beta * dt * dt);
+          dt * dt * (0.5 - beta + excess * (1.0 - gamma)) * newton->vector[MPMI_A0][at]) /
+         ((beta + excess * gamma) * dt * dt);
 }
 
 /* Returns the mean acceleration over the step that belongs to a displacement. */

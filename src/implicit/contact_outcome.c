@@ -14,7 +14,7 @@ static const double pushes_at_all = 1e-2, weighs_at_all = 5e-2;
 static void tell(mpmi_balance *balance, const mpmi_constraint *of) {
   mpmi_contact_nodes *contact = &balance->nodes->contact;
   mpmi_touch *touch = &contact->touch[of->touch];
-  const double dt = balance->step->dt, seconds = dt * mpmi_contact_share(balance->settings);
+  const double dt = balance->step->dt, seconds = dt * mpmi_contact_share(balance);
   double move[3], impulse[3], along, across[3];
   for (int32_t c = 0; c < 3; ++c) impulse[c] = of->closed ? seconds * of->force[c] : 0.0;
   mpmi_split(impulse, touch->normal, &touch->normal_impulse, touch->tangential);

@@ -209,13 +209,14 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   return MPM_OK;
 }
 
-/* Returns what contact and springs add to the acceleration of a row in the balance. */
+/* Returns what contact and springs add to the acceleration of a row. */
 static double contact_acceleration(const mpmi_balance *balance, int64_t at) {
   const mpmi_newton *newton = balance->newton;
   const double mass = newton->mass[at / balance->settings->grid->dim];
   return mpmi_is_held(newton->matrix.held[at]) || !(mass > 0.0)
              ? 0.0
-             : (newton->vector[MPMI_CONTACT][at] + newton->vector[MPMI_SPRINGS][at]) / mass;
+             : (newton->vector[MPMI_CONTACT][at] + newton->vector[MPMI_SPRINGS][at]) / mass /
+                   mpmi_contact_in_balance(balance);
 }
 
 /* Returns by how much the velocity of a row changes in a step with contact, whose impulse comes on top of
@@ -225,7 +226,7 @@ static double increment_in_contact(const mpmi_balance *balance, int64_t at) {
   const double by_contact = contact_acceleration(balance, at);
   const double after = mpmi_newmark_acceleration(balance, at) - by_contact;
   return dt * ((1.0 - gamma) * balance->newton->vector[MPMI_A0][at] + gamma * after +
-               mpmi_contact_share(balance->settings) * by_contact);
+               2.0 * balance->settings->desc.newmark_beta * by_contact);
 }
 
 /* Sets what particles take from the nodes: [u / dt, m, a1 dt], or in contact the whole increment of the
@@ -254,10 +255,13 @@ static void set_nodes(mpmi_balance *balance) {
 /* Sums up the work of damping: its mean force over the step times the way of each row. */
 static void sum_damping(mpmi_balance *balance) {
   const mpmi_newton *newton = balance->newton;
+  const mpm_stepper_desc *desc = &balance->settings->desc;
   const int32_t dim = balance->settings->grid->dim;
-  if (!(balance->settings->desc.mass_damping > 0.0)) return;
+  const double beyond = balance->step->dt * (2.0 * desc->newmark_beta - desc->newmark_gamma);
+  if (!(desc->mass_damping > 0.0)) return;
   for (int64_t at = 0; at < newton->matrix.rows * dim; ++at) {
-    const double mean = 0.5 * (newton->vector[MPMI_V0][at] + mpmi_newmark_velocity(balance, at));
+    const double end = mpmi_newmark_velocity(balance, at) + beyond * contact_acceleration(balance, at);
+    const double mean = 0.5 * (newton->vector[MPMI_V0][at] + end);
     if (mpmi_is_own_row(&newton->matrix, at / dim))
       mpmi_exact_add(&balance->step->work->tally.sum[MPMI_TALLY_DAMPING],
                      newton->mass[at / dim] * mpmi_damping_acceleration(balance, at, mean) *

@@ -73,7 +73,7 @@ static double inertia_terms(const iteration *it) {
   const mpmi_balance *balance = it->balance;
   const mpmi_newton *newton = it->newton;
   const int32_t dim = balance->settings->grid->dim;
-  const double dt = balance->step->dt, beta = balance->settings->desc.newmark_beta;
+  const double dt = balance->step->dt, beta = mpmi_damped_beta(balance);
   if (!mpmi_is_dynamic(balance->settings)) return 0.0;
   for (int64_t i = 0; i < it->n; ++i) {
     const double reach = fabs(newton->vector[MPMI_U][i]) + dt * fabs(newton->vector[MPMI_V0][i]);
@@ -118,7 +118,7 @@ static void add_inertia(iteration *it) {
   mpmi_matrix *A = &newton->matrix;
   double *term = newton->vector[MPMI_TERMS], *size = newton->vector[MPMI_DIAGONAL];
   const int32_t dim = balance->settings->grid->dim;
-  const double beta = balance->settings->desc.newmark_beta, dt = balance->step->dt;
+  const double beta = mpmi_damped_beta(balance), dt = balance->step->dt;
   const double damping = balance->settings->desc.mass_damping * balance->settings->desc.newmark_gamma;
   const double by_mass =
       mpmi_is_dynamic(balance->settings) ? 1.0 / (beta * dt * dt) + damping / (beta * dt) : 0.0;

@@ -33,7 +33,7 @@ static double contact_on(const mpmi_balance *balance, int64_t row, int32_t c) {
   const int64_t at = row * balance->settings->grid->dim + c;
   if (!(newton->mass[row] > 0.0)) return 0.0;
   if (mpmi_is_held(newton->matrix.held[at]))
-    return mpmi_contact_share(balance->settings) * newton->vector[MPMI_SPRINGS][at];
+    return mpmi_contact_share(balance) * newton->vector[MPMI_SPRINGS][at];
   return newton->vector[MPMI_CONTACT][at] + newton->vector[MPMI_SPRINGS][at];
 }
 
@@ -115,7 +115,7 @@ static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_constraints *constraints = &balance->layout->constraints;
   const int32_t held = mpmi_is_held(newton->matrix.held[row * balance->settings->grid->dim + c]);
   const double dt = balance->step->dt, contact = contact_on(balance, row, c),
-               beyond = held ? 0.0 : (1.0 - mpmi_contact_share(balance->settings)) * contact,
+               beyond = held ? 0.0 : (1.0 - mpmi_contact_share(balance)) * contact,
                given = contact + extension_on(balance, row, c), as_momentum = given - beyond;
   const int32_t own = mpmi_is_own_row(&newton->matrix, row); /* one part books what happens there */
   double total = 0.0, along = 0.0, on_nodes = 0.0;

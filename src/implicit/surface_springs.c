@@ -188,7 +188,7 @@ void mpmi_springs_stiffen(mpmi_balance *balance) {
 static void tell_walls(mpmi_balance *balance, const mpm_surface *s, int64_t k, const double *force) {
   const mpmi_constraints *constraints = &balance->layout->constraints;
   const mpmi_newton *newton = balance->newton;
-  const double share = mpmi_contact_share(balance->settings);
+  const double share = mpmi_contact_share(balance);
   for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
     if (s->around.slot[n] < 0 || constraints->tie_of[s->around.slot[n]] < 0) continue;
     const mpmi_tie *tie = &constraints->tie[constraints->tie_of[s->around.slot[n]]];
@@ -242,7 +242,7 @@ static mpm_status tell_ends(const mpmi_balance *balance, mpm_surface *s) {
 }
 
 static void finish_surface(mpmi_balance *balance, mpm_surface *s) {
-  const double share = mpmi_contact_share(balance->settings), dt = balance->step->dt;
+  const double share = mpmi_contact_share(balance), dt = balance->step->dt;
   for (int64_t k = 0; k < s->next.count; ++k) {
     mpmi_marker *m = &s->next.at[k];
     spring_end is;

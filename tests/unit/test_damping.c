@@ -1,5 +1,6 @@
 /* Damping of nodes: what it does to the motion of bodies that move as one, against the rules of the scheme;
  * what it takes of the energy; that it leaves alone what is held. */
+#include "damping.h"
 #include "body.h"
 
 enum { STEPS = 12 };
@@ -402,5 +403,6 @@ Suite *damping_suite(void) {
   suite_add_tcase(suite, blocks);
   suite_add_tcase(suite, bars);
   suite_add_tcase(suite, other);
+  add_damping_contact(suite);
   return suite;
 }
