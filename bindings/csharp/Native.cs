@@ -471,7 +471,7 @@ namespace Mpm {
   public unsafe partial struct Message {
     /// <summary>to whom, or from whom.</summary>
     public int part;
-    /// <summary>0.</summary>
+    /// <summary>0; not looked at in what arrives.</summary>
     public int reserved;
     /// <summary>how many; 0 is sent too where the partner is known.</summary>
     public long bytes;

@@ -335,7 +335,7 @@ module mpm
   type, bind(c) :: mpm_message
     !> to whom, or from whom.
     integer(c_int32_t) :: part
-    !> 0.
+    !> 0; not looked at in what arrives.
     integer(c_int32_t) :: reserved
     !> how many; 0 is sent too where the partner is known.
     integer(c_int64_t) :: bytes

@@ -743,7 +743,7 @@ impl Default for mpm_view {
 pub struct mpm_message {
     /// to whom, or from whom
     pub part: i32,
-    /// 0
+    /// 0; not looked at in what arrives
     pub reserved: i32,
     /// how many; 0 is sent too where the partner is known
     pub bytes: i64,
