@@ -201,6 +201,15 @@ static inline int32_t mpmi_coupling_span(const mpmi_settings *settings) {
   return settings->grid->width + (settings->desc.locking_remedy ? settings->grid->centred : 0);
 }
 
+/* Writes the offset from a node of number `index` of those that couple with it, in the order of `place`. */
+static inline void mpmi_offset_of(const mpmi_balance *balance, int32_t index, int32_t *offset) {
+  const int32_t span = mpmi_coupling_span(balance->settings), reach = 2 * span - 1;
+  for (int32_t k = balance->settings->grid->dim - 1; k >= 0; --k) {
+    offset[k] = index % reach - (span - 1);
+    index /= reach;
+  }
+}
+
 /* Finds the places of the nodes of a cube of `width` in one of `edge`, the last axis fastest; returns how
  * many there are. */
 static inline int32_t mpmi_cube_places(int32_t dim, int32_t width, int32_t edge, int32_t *place) {
@@ -345,8 +354,6 @@ void mpmi_unknowns_fold(const mpmi_balance *balance, const mpmi_nodal *forces, d
 /* ---- pattern.c --------------------------------------------------------------------------------------- */
 /* Makes the pattern for the active nodes as numbered, with so many rows. */
 mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows);
-/* Writes the offset from a node of number `index` of those that couple with it, in the order of `place`. */
-void mpmi_offset_of(const mpmi_balance *balance, int32_t index, int32_t *offset);
 
 /* ---- assembly.c -------------------------------------------------------------------------------------- */
 /* Computes the external forces; their fourth value tells the nodes that have stiffness. */

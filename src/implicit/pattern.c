@@ -7,14 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void mpmi_offset_of(const mpmi_balance *balance, int32_t index, int32_t *offset) {
-  const int32_t span = mpmi_coupling_span(balance->settings), reach = 2 * span - 1;
-  for (int32_t k = balance->settings->grid->dim - 1; k >= 0; --k) {
-    offset[k] = index % reach - (span - 1);
-    index /= reach;
-  }
-}
-
 /* Lists active nodes by row, each row's in the order of their slots. */
 static void group(mpmi_newton *newton, int64_t rows) {
   memset(newton->members_start, 0, (size_t)(rows + 1) * sizeof *newton->members_start);
