@@ -18,6 +18,7 @@ void implicit_quadratic(const char *name, const world *w, double C);
 
 TCase *implicit_extension_case(void);
 TCase *implicit_symmetry_case(void);
+TCase *implicit_mirrors_case(void);
 TCase *implicit_failures_case(void);
 TCase *implicit_large_case(void); /* the same of large bodies */
 

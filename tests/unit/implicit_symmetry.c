@@ -178,7 +178,14 @@ END_TEST
 TCase *implicit_symmetry_case(void) {
   TCase *tests = tcase_create("symmetry");
   tcase_set_timeout(tests, 60.0);
+  tcase_set_tags(tests, "long");
   tcase_add_loop_test(tests, part_on_slip_walls_is_the_whole, 0, IMPLICIT_BASES * SHAPES);
+  return tests;
+}
+
+TCase *implicit_mirrors_case(void) {
+  TCase *tests = tcase_create("mirrors");
+  tcase_set_timeout(tests, 60.0);
   tcase_add_loop_test(tests, walls_take_the_momentum, 0, IMPLICIT_BASES * SHAPES);
   return tests;
 }

@@ -568,6 +568,7 @@ Suite *implicit_suite(void) {
   suite_add_tcase(suite, on_threads);
   suite_add_tcase(suite, implicit_extension_case());
   suite_add_tcase(suite, implicit_symmetry_case());
+  suite_add_tcase(suite, implicit_mirrors_case());
   suite_add_tcase(suite, implicit_failures_case());
   suite_add_tcase(suite, implicit_large_case());
   return suite;
