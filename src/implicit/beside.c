@@ -17,10 +17,10 @@ int64_t mpmi_node_beside(const mpmi_balance *balance, int64_t slot, const int32_
   const mpmi_settings *settings = balance->settings;
   int64_t index[3] = {0};
   int32_t to[3] = {0, 0, 0};
+  for (int32_t k = 0; k < 3; ++k) mirror[k] = -1;
   mpmi_blocks_index(&balance->layout->blocks, slot, index);
   for (int32_t k = 0; k < settings->grid->dim; ++k) {
     to[k] = offset[k];
-    mirror[k] = -1;
     for (int32_t face = 2 * k; face < 2 * k + 2; ++face) {
       const int64_t far = mirrors(settings, face) ? beyond(settings->grid, face, index[k] + to[k]) : 0;
       if (far <= 0) continue;
@@ -31,23 +31,26 @@ int64_t mpmi_node_beside(const mpmi_balance *balance, int64_t slot, const int32_
   return mpmi_blocks_around(&balance->layout->blocks, slot, to);
 }
 
-double mpmi_copies_of(const mpmi_balance *balance, int64_t slot) {
+/* Returns 1 when a node lies on the plane of a mirroring wall across an axis. */
+static int32_t is_own_image(const mpmi_balance *balance, int64_t slot, int32_t axis) {
   const mpmi_settings *settings = balance->settings;
   int64_t index[3] = {0};
-  double copies = 1.0;
+  int32_t is = 0;
   mpmi_blocks_index(&balance->layout->blocks, slot, index);
-  for (int32_t face = 0; face < 2 * settings->grid->dim; ++face)
-    if (mirrors(settings, face) && beyond(settings->grid, face, index[face / 2]) == 0) copies *= 2.0;
+  for (int32_t face = 2 * axis; face < 2 * axis + 2; ++face)
+    is |= mirrors(settings, face) && beyond(settings->grid, face, index[axis]) == 0;
+  return is;
+}
+
+double mpmi_copies_of(const mpmi_balance *balance, int64_t slot) {
+  double copies = 1.0;
+  for (int32_t k = 0; k < balance->settings->grid->dim; ++k)
+    if (is_own_image(balance, slot, k)) copies *= 2.0;
   return copies;
 }
 
 int32_t mpmi_is_zero(const mpmi_balance *balance, int64_t slot, int32_t c) {
-  int64_t index[3] = {0};
-  mpmi_blocks_index(&balance->layout->blocks, slot, index);
-  for (int32_t face = 2 * c; face < 2 * c + 2; ++face)
-    if (mirrors(balance->settings, face) && beyond(balance->settings->grid, face, index[c]) == 0)
-      return mpmi_holder_of(balance, slot, c) == MPMI_ROW_WALL;
-  return 0;
+  return is_own_image(balance, slot, c) && mpmi_holder_of(balance, slot, c) == MPMI_ROW_WALL;
 }
 
 double mpmi_whole_mass(const mpmi_balance *balance, int64_t row) {
@@ -64,13 +67,24 @@ static int32_t takes_part(const mpmi_balance *balance, int64_t row, int32_t c) {
   return !mpmi_is_held(A->held[row * A->block + c]) || mpmi_is_zero(balance, balance->newton->master[row], c);
 }
 
+/* Returns 1 when the matrix tells that the node at an offset from a row's has no more than some whole mass:
+ * a look at its row, before all that finds the node. Of several parts, rows of others may have no entries. */
+static int32_t is_lighter(const mpmi_balance *balance, int64_t row, int32_t offset, double above) {
+  const mpmi_newton *newton = balance->newton;
+  const int64_t active = newton->active_of[newton->master[row]];
+  const int32_t entry = mpmi_is_kept(newton, row) ? newton->place[active * newton->offsets + offset] : -1;
+  return entry >= 0 && !(mpmi_whole_mass(balance, newton->matrix.column[entry]) > above);
+}
+
 int64_t mpmi_next_beside(const mpmi_balance *balance, int64_t row, int32_t c, double above, int32_t *at,
                          double *sign) {
   const mpmi_newton *newton = balance->newton;
   const int64_t from = newton->master[row];
   while (*at < newton->offsets) {
     int32_t offset[3], mirror[3];
-    mpmi_offset_of(balance, (*at)++, offset);
+    const int32_t number = (*at)++;
+    if (is_lighter(balance, row, number, above)) continue;
+    mpmi_offset_of(balance, number, offset);
     const int64_t slot = mpmi_node_beside(balance, from, offset, mirror);
     const int32_t active = slot < 0 ? -1 : newton->active_of[slot];
     if (active < 0) continue;

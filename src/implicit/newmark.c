@@ -128,18 +128,22 @@ static void give_to_heaviest(const mpmi_balance *balance, int64_t at, double mos
 }
 
 /* Light rows, where f / m is rough, take the accelerations of the particles, and the rest of their force
- * goes to neighbours. */
+ * goes to neighbours. Most rows are not light beside any other, and are not looked at by components. */
 static void smooth_light_rows(mpmi_balance *balance, const double *of_particles) {
   const mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
   double *start = newton->vector[MPMI_A0];
-  for (int64_t at = 0; at < newton->matrix.rows * dim; ++at) {
-    if (mpmi_is_held(newton->matrix.held[at])) continue;
-    const double mass = newton->mass[at / dim],
-                 most = mpmi_heaviest_beside(balance, at / dim, (int32_t)(at % dim));
-    if (!(most > 0.0) || mpmi_whole_mass(balance, at / dim) > light_row * most) continue;
-    give_to_heaviest(balance, at, most, mass * (start[at] - of_particles[at]));
-    start[at] = of_particles[at];
+  for (int64_t row = 0; row < newton->matrix.rows; ++row) {
+    const double whole = mpmi_whole_mass(balance, row);
+    if (whole > light_row * mpmi_heaviest_beside(balance, row, -1)) continue;
+    for (int32_t c = 0; c < dim; ++c) {
+      const int64_t at = row * dim + c;
+      if (mpmi_is_held(newton->matrix.held[at])) continue;
+      const double most = mpmi_heaviest_beside(balance, row, c);
+      if (!(most > 0.0) || whole > light_row * most) continue;
+      give_to_heaviest(balance, at, most, newton->mass[row] * (start[at] - of_particles[at]));
+      start[at] = of_particles[at];
+    }
   }
 }
 
