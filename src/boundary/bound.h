@@ -21,9 +21,6 @@ typedef struct mpmi_bound {
   int32_t loads;        /* surfaces have given forces to the nodes */
 } mpmi_bound;
 
-/* Who holds a component of a node, in held[][]. */
-enum { MPMI_HELD_BY_HOST = 1, MPMI_HELD_BY_PARTICLES = 2, MPMI_HELD_BY_SURFACES = 3 };
-
 static inline const mpmi_constraints *mpmi_constraints_of(const mpmi_bound *bound) {
   return &bound->step->layout->constraints;
 }

@@ -83,7 +83,7 @@ mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projectio
   if (!status) status = projection->main ? act(&bound, projection) : act_on_velocities(&bound, projection);
   if (!status) status = mpmi_ties_unfold(&bound);
   if (status) return status;
-  const int32_t tells = bound.records && projection->held && share != 0.0; /* what holders gave counts */
+  const int32_t tells = bound.records && share != 0.0; /* what holders gave counts */
   if (tells && nodes->prescription.any && (status = mpmi_prescribed_share(&bound))) return status;
   if (!projection->main) return MPM_OK;
   if ((status = mpmi_damping_sum(&bound))) return status;

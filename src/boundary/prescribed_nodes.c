@@ -161,14 +161,16 @@ static void fold_task(void *data, int64_t k) {
   }
 }
 
-/* Holds nodes that the host has not held: the host comes first. */
+/* Holds nodes that the host has not held: the host comes first. Across a wall on whose plane a node lies
+ * particles and their images have the mean 0. */
 static void hold_slots(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failure *failure) {
   const mpmi_blocks *blocks = &bound->step->layout->blocks;
   for (int64_t slot = begin; slot < end; ++slot)
     for (int32_t c = 0; c < bound->dim && mpmi_moves(bound, slot); ++c) {
       const mpmi_prescribed_sums *sums = sums_at(bound->nodes, slot);
       if (bound->nodes->held[slot][c] || !(sums->mass[c] > bound->step->layout->mass_cut)) continue;
-      const double value = sums->momentum[c] / sums->mass[c];
+      const double value =
+          mpmi_is_own_image(mpmi_constraints_of(bound), slot, c) ? 0.0 : sums->momentum[c] / sums->mass[c];
       if (!isfinite(value))
         mpmi_failure_take(failure, mpmi_node_failure(MPM_NONFINITE, blocks, slot,
                                                      "velocity by prescribed particles not finite"));

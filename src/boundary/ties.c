@@ -95,7 +95,7 @@ static void hold(mpmi_bound *bound, int64_t begin, int64_t end) {
   for (int64_t i = begin; i < end; ++i) {
     const mpmi_tie *tie = &constraints->tie[i];
     for (int32_t c = 0; c < bound->dim; ++c) {
-      if (!tie->zero[c] || mpmi_held_by(bound->nodes, tie->master, c)) continue;
+      if (!tie->zero[c] || mpmi_moved_by(bound->nodes, constraints, tie->master, c)) continue;
       mpmi_velocity(bound->values, tie->master)[c] = 0.0;
       if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, tie->master)[c] = 0.0;
     }

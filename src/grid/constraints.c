@@ -116,7 +116,7 @@ static int32_t tie_at(walk *w, int64_t master) {
   if (*of < 0) {
     *of = (int32_t)w->ties++;
     if (w->fill) {
-      w->out->tie[*of] = (mpmi_tie){master, 0, 0, {0, 0, 0}, {-1, -1, -1}};
+      w->out->tie[*of] = (mpmi_tie){master, 0, 0, {0, 0, 0}, {0, 0, 0}, {-1, -1, -1}};
     }
   }
   return *of;
@@ -127,6 +127,7 @@ static void hold_on_planes(walk *w, mpmi_tie *tie, const int64_t *index) {
   for (int32_t k = 0; k < grid->dim; ++k) {
     const int32_t face = plane_face(grid, w->wall, k, index[k]);
     if (face < 0) continue;
+    tie->across[k] = 1;
     node_role taken = {{0}, {0}, {tie->face[0], tie->face[1], tie->face[2]}, 0};
     take(&taken, w->wall, face, grid->dim);
     for (int32_t c = 0; c < grid->dim; ++c) {

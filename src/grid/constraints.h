@@ -28,6 +28,7 @@ typedef struct mpmi_tie {
   int64_t master;
   int64_t first, count; /* its followers are [first, first + count) */
   int32_t zero[3];      /* 1: a wall holds the component at 0 */
+  int32_t across[3];    /* 1: it is the one across a wall on whose plane the master lies */
   int32_t face[3];      /* wall that takes the reaction of a component, or -1 */
 } mpmi_tie;
 
@@ -57,5 +58,11 @@ mpm_status mpmi_constraints_build(mpmi_constraints *constraints, const mpmi_bloc
                                   const mpmi_wall *wall);
 /* Returns 1 when the node in a slot moves by itself and follows no other. */
 int32_t mpmi_constraints_is_free(const mpmi_constraints *constraints, int64_t slot);
+/* Returns 1 for the component of a node across a fixed or slip wall on whose plane it lies: there the node is
+ * its own mirror image. */
+static inline int32_t mpmi_is_own_image(const mpmi_constraints *constraints, int64_t slot, int32_t c) {
+  const int32_t tie = constraints->tie_of[slot];
+  return tie >= 0 && constraints->tie[tie].across[c];
+}
 
 #endif

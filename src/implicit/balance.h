@@ -236,9 +236,10 @@ static inline int64_t mpmi_master_of(const mpmi_balance *balance, int64_t slot) 
 
 /* Returns who holds a component of a node that moves by itself. */
 static inline uint8_t mpmi_holder_of(const mpmi_balance *balance, int64_t slot, int32_t c) {
-  const int32_t tie = balance->layout->constraints.tie_of[slot];
-  if (mpmi_held_by(balance->nodes, slot, c)) return MPMI_ROW_PRESCRIBED;
-  return tie >= 0 && balance->layout->constraints.tie[tie].zero[c] ? MPMI_ROW_WALL : MPMI_ROW_FREE;
+  const mpmi_constraints *constraints = &balance->layout->constraints;
+  const int32_t tie = constraints->tie_of[slot];
+  if (mpmi_moved_by(balance->nodes, constraints, slot, c)) return MPMI_ROW_PRESCRIBED;
+  return tie >= 0 && constraints->tie[tie].zero[c] ? MPMI_ROW_WALL : MPMI_ROW_FREE;
 }
 
 /* Returns e = a dt (2 beta - gamma) / 2, or 0 where 2 beta < gamma: e dt (v' - v) is what a displacement has

@@ -31,8 +31,8 @@ int64_t mpmi_node_beside(const mpmi_balance *balance, int64_t slot, const int32_
   return mpmi_blocks_around(&balance->layout->blocks, slot, to);
 }
 
-/* Returns 1 when a node lies on the plane of a mirroring wall across an axis. */
-static int32_t is_own_image(const mpmi_balance *balance, int64_t slot, int32_t axis) {
+/* Returns 1 when a node lies on the plane of a slip wall across an axis. */
+static int32_t lies_on_symmetry_plane(const mpmi_balance *balance, int64_t slot, int32_t axis) {
   const mpmi_settings *settings = balance->settings;
   int64_t index[3] = {0};
   int32_t is = 0;
@@ -45,12 +45,12 @@ static int32_t is_own_image(const mpmi_balance *balance, int64_t slot, int32_t a
 double mpmi_copies_of(const mpmi_balance *balance, int64_t slot) {
   double copies = 1.0;
   for (int32_t k = 0; k < balance->settings->grid->dim; ++k)
-    if (is_own_image(balance, slot, k)) copies *= 2.0;
+    if (lies_on_symmetry_plane(balance, slot, k)) copies *= 2.0;
   return copies;
 }
 
 int32_t mpmi_is_zero(const mpmi_balance *balance, int64_t slot, int32_t c) {
-  return is_own_image(balance, slot, c) && mpmi_holder_of(balance, slot, c) == MPMI_ROW_WALL;
+  return lies_on_symmetry_plane(balance, slot, c) && mpmi_holder_of(balance, slot, c) == MPMI_ROW_WALL;
 }
 
 double mpmi_whole_mass(const mpmi_balance *balance, int64_t row) {

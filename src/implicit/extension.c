@@ -62,7 +62,7 @@ static int32_t is_weak(const search *s, int64_t row, double largest) {
       s->balance->settings->grid->family == MPMI_FAMILY_BSPLINE1 ? outer_share_linear : outer_share;
   if (s->stiffness[row] >= share * largest) return 0;
   for (int32_t c = 0; c < dim; ++c)
-    if (mpmi_holder_of(s->balance, s->slot[row], c) == MPMI_ROW_PRESCRIBED) return 0;
+    if (mpmi_held_by(s->balance->nodes, s->slot[row], c)) return 0;
   double most = 0.0;
   int32_t at[3] = {-reach, dim > 1 ? -reach : 0, dim > 2 ? -reach : 0};
   for (;;) {

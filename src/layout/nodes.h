@@ -115,6 +115,8 @@ typedef struct mpmi_contact_state {
   int32_t closed, stuck;
 } mpmi_contact_state;
 
+enum { MPMI_HELD_BY_HOST = 1, MPMI_HELD_BY_PARTICLES = 2, MPMI_HELD_BY_SURFACES = 3 };
+
 typedef struct mpmi_nodes {
   mpmi_nodal solved;    /* the projection with forces, 4 or 8 values: what particles take from */
   mpmi_nodal projected; /* the other projections, 4 values */
@@ -123,7 +125,7 @@ typedef struct mpmi_nodes {
   mpmi_impulse *impulse;
   int64_t impulse_capacity;
   int32_t has_holders; /* 1: velocities may be prescribed; else `held` and `held_value` are not there */
-  uint8_t (*held)[3];  /* who prescribes a component (boundary/bound.h), 0: nobody */
+  uint8_t (*held)[3];  /* who prescribes a component: MPMI_HELD_BY_..., or 0 for nobody */
   double (*held_value)[3];
   int64_t held_capacity;
   double (*hook_impulse)[3]; /* there only where there are hooks */
@@ -155,8 +157,17 @@ static inline int32_t mpmi_places_nodes(const mpmi_settings *settings, const mpm
   return mpmi_is_total_lagrangian(settings->grid) && nodes->contact.surface_count > 0;
 }
 
+/* Returns who has the reaction of a component: the host, prescribed particles or surfaces; 0 for others. */
 static inline int32_t mpmi_held_by(const mpmi_nodes *nodes, int64_t slot, int32_t c) {
   return nodes->has_holders ? nodes->held[slot][c] : 0;
+}
+
+/* Returns the same for who says how it moves. Across a wall that mirrors, prescribed particles and their
+ * images hold a node on the plane where the wall does. */
+static inline int32_t mpmi_moved_by(const mpmi_nodes *nodes, const mpmi_constraints *constraints,
+                                    int64_t slot, int32_t c) {
+  const int32_t held = mpmi_held_by(nodes, slot, c);
+  return held == MPMI_HELD_BY_PARTICLES && mpmi_is_own_image(constraints, slot, c) ? 0 : held;
 }
 
 /* Makes room for a step in whole, or with `staged` in parts, once the prescribed particles are known. */

@@ -13,6 +13,9 @@ void open_clouds(world *w, const method *how, int32_t dim, int32_t walled, int32
 mpm_status prescribed_turn(void *user, const mpm_particle_batch *b, double *add);
 uint8_t *fetch_flags(const world *w, const mpm_particles *set); /* [dim][count]; to be freed */
 
+/* The sum of mass times a component of a field. */
+double of_field(const world *w, const mpm_particles *set, const char *field, int32_t c);
+
 TCase *prescribed_walls_case(void);
 TCase *prescribed_state_case(void);
 TCase *prescribed_waves_case(void);
