@@ -7,10 +7,13 @@
 #include "contact/contact.h"
 #include "simd/vector3.h"
 
+#include <float.h>
 #include <math.h>
 
 /* Touches of one meeting are swept until what is left is this share of the first sweep. */
 static const double settled = 1e-13;
+/* What changes velocities by less than this share of their sizes is settled, too. */
+static const double rounding = 4.0 * DBL_EPSILON;
 enum { SWEEPS = 30, SWEEPS_OF_FREE = 1000 }; /* 30 are too few for a light obstacle on heavy nodes */
 
 /* ---- parties ------------------------------------------------------------------------------------------- */
@@ -36,6 +39,7 @@ typedef struct encounter {
   mpmi_rigid_surface *surface, *free; /* the first party, or NULL */
   const mpmi_surface_site *site;      /* what the parties' sites are numbers of, or NULL: they have none */
   double velocity[3], compliance[3], of_surface[3];
+  double speed; /* the sizes of both velocities, by which rounding is known */
 } encounter;
 
 /* Returns the velocity of a body at its node, or that of the copy of another part's. */
@@ -56,10 +60,17 @@ static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch, int32_
   for (int32_t c = 0; c < bound->dim; ++c) {
     if (e.surface) e.of_surface[c] += e.party[0]->own_velocity[c];
     const double first = e.surface ? e.of_surface[c] : party_velocity(bound, e.party[0])[c];
-    e.velocity[c] = party_velocity(bound, e.party[1])[c] - first;
+    const double second = party_velocity(bound, e.party[1])[c];
+    e.velocity[c] = second - first;
+    e.speed += fabs(first) + fabs(second);
     e.compliance[c] = e.party[0]->inverse_mass[c] + e.party[1]->inverse_mass[c];
   }
   return e;
+}
+
+/* Returns a change of the relative velocity, and 0 where it may be rounding: sweeps would never end. */
+static double beyond_rounding(const encounter *e, double change) {
+  return change > rounding * e->speed ? change : 0.0;
 }
 
 /* Finds by how much an impulse changes the relative velocity, but for a free obstacle. */
@@ -143,7 +154,7 @@ static double tie(mpmi_bound *bound, mpmi_touch *touch) {
     const double unit[3] = {c == 0, c == 1, c == 2}, compliance = weighted(&e, unit);
     if (!(compliance > least_compliance(&e))) continue;
     impulse[c] = -e.velocity[c] / compliance;
-    stopped = fmax(stopped, fabs(e.velocity[c]));
+    stopped = fmax(stopped, beyond_rounding(&e, fabs(e.velocity[c])));
     if (!e.free && !e.site) continue;
     tie_by(bound, touch, &e, impulse);
     impulse[c] = 0.0;
@@ -235,7 +246,7 @@ static double push(mpmi_bound *bound, mpmi_touch *touch) {
   touch->stuck &= touch->closed;
   const double rubbed = give_friction(bound, touch, &e, normal, tangential);
   touch->normal_impulse = normal;
-  return fmax(moved, rubbed);
+  return beyond_rounding(&e, fmax(moved, rubbed));
 }
 
 /* Keeps a touch as it was found, in a projection without forces: a closed one stays closed both ways. */
@@ -255,7 +266,7 @@ static double keep(mpmi_bound *bound, mpmi_touch *touch) {
     }
   }
   give(bound, touch, &e, impulse, 1);
-  return stopped;
+  return beyond_rounding(&e, stopped);
 }
 
 /* ---- meetings ------------------------------------------------------------------------------------------ */

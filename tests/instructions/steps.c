@@ -13,14 +13,16 @@ typedef struct scene {
   int32_t cells;     /* of the body on each axis, with two particles on each axis in a cell */
   int32_t obstacles; /* spheres that are far from it */
   int32_t halves;    /* it is cut in the middle of the last axis: two bodies, which touch all over the cut */
+  int32_t carries;   /* a free sphere in it, which flies with it: changes are small beside velocities */
 } scene;
 static const scene scenes[] = {
-    {"3-D quadratic FLIP", 3, MPM_BSPLINE2, MPM_FLIP, 12, 0, 0},
-    {"3-D quadratic APIC_MLS", 3, MPM_BSPLINE2, MPM_APIC_MLS, 12, 0, 0},
-    {"3-D linear FLIP", 3, MPM_LINEAR, MPM_FLIP, 12, 0, 0},
-    {"2-D quadratic FLIP", 2, MPM_BSPLINE2, MPM_FLIP, 48, 0, 0},
-    {"3-D quadratic FLIP, far obstacles", 3, MPM_BSPLINE2, MPM_FLIP, 12, MOST_OBSTACLES, 0},
-    {"3-D quadratic FLIP, halves in contact", 3, MPM_BSPLINE2, MPM_FLIP, 6, 0, 1}};
+    {"3-D quadratic FLIP", 3, MPM_BSPLINE2, MPM_FLIP, 12, 0, 0, 0},
+    {"3-D quadratic APIC_MLS", 3, MPM_BSPLINE2, MPM_APIC_MLS, 12, 0, 0, 0},
+    {"3-D linear FLIP", 3, MPM_LINEAR, MPM_FLIP, 12, 0, 0, 0},
+    {"2-D quadratic FLIP", 2, MPM_BSPLINE2, MPM_FLIP, 48, 0, 0, 0},
+    {"3-D quadratic FLIP, far obstacles", 3, MPM_BSPLINE2, MPM_FLIP, 12, MOST_OBSTACLES, 0, 0},
+    {"3-D quadratic FLIP, halves in contact", 3, MPM_BSPLINE2, MPM_FLIP, 6, 0, 1, 0},
+    {"2-D quadratic FLIP, carried sphere", 2, MPM_BSPLINE2, MPM_FLIP, 48, 0, 0, 1}};
 
 typedef struct simulation {
   mpm_context *context;
@@ -32,8 +34,10 @@ typedef struct simulation {
   mpm_obstacle *obstacle[MOST_OBSTACLES];
 } simulation;
 
+static const double speed = 10.0; /* of all that flies, along each axis */
+
 /* It turns and strains, so that no term is zero. */
-static mpm_status spin(mpm_particles *set, int32_t dim, double middle) {
+static mpm_status spin(mpm_particles *set, int32_t dim, double middle, double along) {
   const int64_t n = mpm_particles_count(set);
   double *x = malloc((size_t)(dim * n) * sizeof *x), *v = malloc((size_t)(dim * n) * sizeof *v);
   if (!x || !v) exit(1);
@@ -42,7 +46,7 @@ static mpm_status spin(mpm_particles *set, int32_t dim, double middle) {
     double at[3] = {0.0, 0.0, 0.0};
     for (int32_t k = 0; k < dim; ++k) at[k] = (x[k * n + i] - middle) / middle;
     const double rate[3] = {0.1 * at[2] - at[1], at[0] - 0.2 * at[2], 0.15 * at[0] + 0.1 * at[1]};
-    for (int32_t k = 0; k < dim; ++k) v[k * n + i] = 0.2 * rate[k];
+    for (int32_t k = 0; k < dim; ++k) v[k * n + i] = 0.2 * rate[k] + along;
   }
   if (!status) status = mpm_particles_set(set, "velocity", MPM_F64, dim, n, NULL, v);
   free(x), free(v);
@@ -67,6 +71,24 @@ static mpm_status add_obstacles(simulation *sim, const scene *in) {
   return status;
 }
 
+static mpm_status add_carried(simulation *sim, const scene *in) {
+  mpm_contact_desc contact;
+  mpm_obstacle_desc d;
+  mpm_status status = mpm_contact_desc_init(&contact, sizeof contact);
+  if (!status) status = mpm_obstacle_desc_init(&d, sizeof d);
+  if (status || !in->carries) return status;
+  contact.friction = contact.friction_static = 0.3;
+  d.contact = &contact;
+  d.shape = MPM_SHAPE_SPHERE;
+  d.motion = MPM_MOTION_FREE;
+  d.size[0] = 0.25 * in->cells;
+  d.mass = 0.2 * in->cells * in->cells;
+  d.inertia[8] = 0.5 * d.mass * d.size[0] * d.size[0];
+  for (int32_t k = 0; k < in->dim; ++k) d.position[k] = in->cells, d.velocity[k] = speed;
+  status = mpm_obstacle_create(sim->context, &d, &sim->obstacle[0]);
+  return status ? status : mpm_stepper_add_obstacle(sim->stepper, sim->obstacle[0]);
+}
+
 static mpm_status add_set(simulation *sim, const scene *in, int32_t which) {
   static const int32_t per_cell[3] = {2, 2, 2};
   const int32_t last = in->dim - 1;
@@ -78,7 +100,7 @@ static mpm_status add_set(simulation *sim, const scene *in, int32_t which) {
   mpm_particles **set = &sim->set[which];
   mpm_status status = mpm_particles_create(sim->context, sim->grid, sim->material, set);
   if (!status) status = mpm_particles_fill_box(*set, lower, upper, per_cell, NULL, NULL);
-  if (!status) status = spin(*set, in->dim, in->cells);
+  if (!status) status = spin(*set, in->dim, in->cells, in->carries ? speed : 0.0);
   if (!status) status = mpm_stepper_add(sim->stepper, *set);
   if (!status && which) status = mpm_stepper_set_body(sim->stepper, *set, which);
   return status;
@@ -108,6 +130,7 @@ static mpm_status set_up(simulation *sim, const scene *in) {
   sim->sets = 1 + in->halves;
   for (int32_t m = 0; m < sim->sets && !status; ++m) status = add_set(sim, in, m);
   if (!status) status = add_obstacles(sim, in);
+  if (!status) status = add_carried(sim, in);
   return status;
 }
 
@@ -121,7 +144,7 @@ static int run(const scene *in) {
   for (int32_t m = 0; m < sim.sets; ++m) particles += mpm_particles_count(sim.set[m]);
   if (!status) printf("%lld\n", (long long)(STEPS * particles));
   mpm_stepper_destroy(sim.stepper);
-  for (int32_t i = 0; i < in->obstacles; ++i) mpm_obstacle_destroy(sim.obstacle[i]);
+  for (int32_t i = 0; i < in->obstacles + in->carries; ++i) mpm_obstacle_destroy(sim.obstacle[i]);
   for (int32_t m = 0; m < sim.sets; ++m) mpm_particles_destroy(sim.set[m]);
   mpm_material_destroy(sim.material);
   mpm_grid_destroy(sim.grid);
