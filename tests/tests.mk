@@ -203,10 +203,11 @@ check-setup:
 
 # Long runs of the method add nothing under a sanitizer but time, and all runs take longer.
 SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS="long clock wide" EXAMPLES_RUN="$(SANITIZED_EXAMPLES)" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 TEST_OPT=-O0 NO_UNDEFINED= check-unit check-examples
+# Without a fork for each test leaks are looked for once in each suite: with it that takes longer than the tests.
 #: check-asan            check-unit and check-examples under the address and the undefined-behaviour sanitizer
 check-asan: SANITIZED_EXAMPLES = user_material staged_coupling cpp_block
 check-asan:
-	+ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \
+	+CK_FORK=no ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \
 	  BUILD=$(BUILD)-asan CPPFLAGS="$(CPPFLAGS) -DMPM_DEBUG" \
 	  CFLAGS="-g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
 

@@ -2,6 +2,7 @@
  * word of the host. */
 #include "adaption.h"
 #include "combinations.h"
+#include "tables.h"
 
 /* ---- steps -------------------------------------------------------------------------------------------- */
 static mpm_adaption_desc busy_desc(void) {
@@ -279,7 +280,7 @@ void add_adaption_steps(Suite *suite) {
   tcase_add_loop_test(steps, open_wall, 0, 2);
   suite_add_tcase(suite, steps);
   TCase *all = tcase_create("combinations");
-  tcase_add_loop_test(all, combination_works, 0, listed);
+  add_table(all, wide_case(suite, "more combinations"), combination_works, listed);
   tcase_set_timeout(all, 60);
   suite_add_tcase(suite, all);
 }

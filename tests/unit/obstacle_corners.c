@@ -137,10 +137,13 @@ START_TEST(driven) {
 END_TEST
 
 void add_obstacle_corners(Suite *suite) {
-  TCase *corners = tcase_create("corners");
-  tcase_add_loop_test(corners, sharp, 0, BROAD);
+  TCase *corners = tcase_create("corners"), *falls = tcase_create("corners that fall");
+  tcase_add_loop_test(falls, sharp, 0, BROAD);
   tcase_add_loop_test(corners, stops, 0, BROAD);
   tcase_add_loop_test(corners, driven, 0, 2);
+  tcase_set_tags(falls, "long");
   tcase_set_timeout(corners, 60);
+  tcase_set_timeout(falls, 60);
   suite_add_tcase(suite, corners);
+  suite_add_tcase(suite, falls);
 }

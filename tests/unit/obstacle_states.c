@@ -569,8 +569,8 @@ START_TEST(shapes) {
 END_TEST
 
 void add_obstacle_states(Suite *suite) {
-  TCase *bits = tcase_create("bits"), *refusals = tcase_create("refusals");
-  tcase_add_loop_test(bits, threads, 0, BROAD);
+  TCase *bits = tcase_create("bits"), *refusals = tcase_create("refusals"), *counts = tcase_create("threads");
+  tcase_add_loop_test(counts, threads, 0, BROAD);
   tcase_add_loop_test(bits, saved_in_contact, 0, BROAD);
   tcase_add_loop_test(bits, failing_steps, 0, METHODS);
   tcase_add_loop_test(bits, asked_for_nodes_of_the_grid, 0, 3);
@@ -581,7 +581,10 @@ void add_obstacle_states(Suite *suite) {
   tcase_add_loop_test(refusals, refused_by_the_grid, 1, 4);
   tcase_add_test(refusals, outlives_the_stepper);
   tcase_add_test(refusals, shapes);
+  tcase_set_tags(counts, "long");
   tcase_set_timeout(bits, 60);
+  tcase_set_timeout(counts, 60);
   suite_add_tcase(suite, bits);
+  suite_add_tcase(suite, counts);
   suite_add_tcase(suite, refusals);
 }

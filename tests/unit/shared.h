@@ -6,6 +6,7 @@
 
 #include "combinations.h"
 #include "parts.h"
+#include "tables.h"
 
 enum { MOST_PARTS = 5, STEPS = 16, SAMPLE = 120 };
 
@@ -111,11 +112,6 @@ void end_hunger(hungry *h, world *w, int32_t part, int64_t before);
 /* The life of a part: the scene is set up, and each act that memory runs out in is done once more. */
 void live_hungrily(int32_t part, const mpm_transport *transport, void *user);
 
-/* A case for what takes long because it is much: it has the tag "wide". */
-TCase *wide_case(Suite *suite, const char *name);
-/* Adds every so many of a table of tests to a case, and the others to a wide one; every fifth. */
-void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every);
-void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count);
 /* Plays the scene in one part, which has a transport where its linear solver depends on that, and then in
  * several. Returns what it has come to. */
 mpm_status check_scene(const scene *is, const char *name, int32_t parts);

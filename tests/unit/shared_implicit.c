@@ -56,7 +56,8 @@ static mpm_status fill_beside(mpm_particles *set, double low) {
   return mpm_particles_fill_box(set, from, to, per_cell, NULL, NULL);
 }
 
-/* Without inertia cells that are half full on three sides take conjugate gradients thousands of iterations. */
+/* Without inertia cells that are half full on three sides take conjugate gradients thousands of
+ * iterations. */
 static const double whole_cells = 6.0 / 13.0;
 
 static mpm_status set_up_implicit(world *w, const scene *is) {

@@ -305,26 +305,10 @@ void live_hungrily(int32_t part, const mpm_transport *transport, void *user) {
   h->memory[part] = w.memory;
 }
 
-TCase *wide_case(Suite *suite, const char *name) {
-  TCase *wide = tcase_create(name);
-  tcase_set_tags(wide, "wide");
-  tcase_set_timeout(wide, 300);
-  suite_add_tcase(suite, wide);
-  return wide;
-}
-
 TCase *faults_case(Suite *suite, const char *name, int32_t wide) {
   TCase *faults = tcase_create(name);
   tcase_set_tags(faults, wide ? "wide faults" : "faults");
   tcase_set_timeout(faults, faults_are_full() ? 3600 : 300);
   suite_add_tcase(suite, faults);
   return faults;
-}
-
-void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every) {
-  for (int32_t i = 0; i < count; ++i) tcase_add_loop_test(i % every ? wide : some, test, i, i + 1);
-}
-
-void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count) {
-  add_every(some, wide, test, count, 5);
 }

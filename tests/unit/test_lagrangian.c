@@ -2,6 +2,7 @@
 #include "geometry.h"
 #include "lagrangian.h"
 #include "reference.h"
+#include "tables.h"
 
 /* Do particles deform by the velocities that nodes have at the end of the step? */
 static int32_t strains_by_nodes(const method *how) {
@@ -639,7 +640,7 @@ Suite *lagrangian_suite(void) {
   tcase_set_timeout(implicit, 60);
   suite_add_tcase(suite, implicit);
   TCase *all = tcase_create("combinations");
-  tcase_add_loop_test(all, combination_works, 0, listed);
+  add_table(all, wide_case(suite, "more combinations"), combination_works, listed);
   tcase_set_timeout(all, 60);
   suite_add_tcase(suite, all);
   return suite;

@@ -1,0 +1,17 @@
+#include "tables.h"
+
+TCase *wide_case(Suite *suite, const char *name) {
+  TCase *wide = tcase_create(name);
+  tcase_set_tags(wide, "wide");
+  tcase_set_timeout(wide, 300);
+  suite_add_tcase(suite, wide);
+  return wide;
+}
+
+void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every) {
+  for (int32_t i = 0; i < count; ++i) tcase_add_loop_test(i % every ? wide : some, test, i, i + 1);
+}
+
+void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count) {
+  add_every(some, wide, test, count, 5);
+}
