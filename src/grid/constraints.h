@@ -27,8 +27,8 @@ typedef struct mpmi_follower {
 typedef struct mpmi_tie {
   int64_t master;
   int64_t first, count; /* its followers are [first, first + count) */
-  int32_t zero[3];      /* 1: a wall holds the component at 0 */
-  int32_t across[3];    /* 1: it is the one across a wall on whose plane the master lies */
+  uint8_t zero[3];      /* 1: a wall holds the component at 0 */
+  uint8_t across[3];    /* 1: it is the one across a wall on whose plane the master lies */
   int32_t face[3];      /* wall that takes the reaction of a component, or -1 */
 } mpmi_tie;
 
