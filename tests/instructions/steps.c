@@ -74,9 +74,10 @@ static mpm_status add_obstacles(simulation *sim, const scene *in) {
 static mpm_status add_carried(simulation *sim, const scene *in) {
   mpm_contact_desc contact;
   mpm_obstacle_desc d;
+  if (!in->carries) return MPM_OK;
   mpm_status status = mpm_contact_desc_init(&contact, sizeof contact);
   if (!status) status = mpm_obstacle_desc_init(&d, sizeof d);
-  if (status || !in->carries) return status;
+  if (status) return status;
   contact.friction = contact.friction_static = 0.3;
   d.contact = &contact;
   d.shape = MPM_SHAPE_SPHERE;

@@ -160,8 +160,8 @@ START_TEST(over_the_seam) {
 END_TEST
 
 /* A block on a plane, which its weight shortens by 1.5 %, goes on from rest with inertia. One step without it
- * balances forces on the weights from before that step, and leaves velocities; what further steps leave comes
- * of first accelerations by row, which on quadratic splines are not 0 where the extension holds rows. */
+ * balances forces on the weights from before that step, and leaves velocities; what further steps leave on
+ * quadratic splines comes of first accelerations by row. */
 START_TEST(goes_on_from_rest) {
   static const int32_t bases[] = {MPM_LINEAR, MPM_BSPLINE2, MPM_BSPLINE3}, steps[] = {1, 2, 4};
   static const double most[3][3] = {{4e-3, 2e-5, 1e-7}, {4e-3, 2e-4, 2e-4}, {4e-3, 1e-5, 1e-7}};
