@@ -1,5 +1,6 @@
 /* Heat beside the numbers that it gives: threads, states, failures, refusals, and where there is nothing. */
 #include "heat.h"
+#include "tables.h"
 
 static world_desc warm_world(const method *how, int32_t dim, int32_t concurrency) {
   world_desc desc = world_with(how, dim, 8, 0.25);
@@ -327,7 +328,7 @@ END_TEST
 
 void add_heat_states(Suite *suite) {
   TCase *states = tcase_create("states");
-  tcase_add_loop_test(states, threads_and_states, 0, 6 * BROAD);
+  add_table(states, wide_case(suite, "more states"), threads_and_states, 6 * BROAD);
   tcase_add_loop_test(states, roll_back, 0, 2);
   tcase_add_loop_test(states, overflow_is_no_solution, 0, 2);
   tcase_add_loop_test(states, memory_runs_out, 0, 2);

@@ -20,6 +20,6 @@ TCase *implicit_extension_case(void);
 TCase *implicit_symmetry_case(void);
 TCase *implicit_mirrors_case(void);
 TCase *implicit_failures_case(void);
-TCase *implicit_large_case(void); /* the same of large bodies */
+TCase *implicit_large_case(TCase *wide); /* the same of large bodies */
 
 #endif

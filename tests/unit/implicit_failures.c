@@ -1,6 +1,7 @@
 /* What may go wrong in an implicit step: each has its status and sentence, leaves the state as it was, and
  * the next step is possible. */
 #include "implicit.h"
+#include "tables.h"
 
 typedef struct block {
   world w;
@@ -563,11 +564,11 @@ START_TEST(advance_out_of_the_grid) {
 }
 END_TEST
 
-TCase *implicit_large_case(void) {
+TCase *implicit_large_case(TCase *wide) {
   TCase *tests = tcase_create("large");
   tcase_set_tags(tests, "long");
   tcase_set_timeout(tests, 60.0);
-  tcase_add_loop_test(tests, large_free_body, 0, 6);
+  add_table(tests, wide, large_free_body, 6);
   return tests;
 }
 

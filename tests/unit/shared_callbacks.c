@@ -170,7 +170,7 @@ START_TEST(callbacks_refuse) {
       ck_assert_msg(r.is.found[p].hash == hash, "call %lld of part %d, part %d: another state",
                     (long long)f.at, (int)f.part, p);
     }
-  } while (next_fault(&f, 12, calls));
+  } while (next_fault(&f, implicit ? 4 : 12, calls));
   ck_assert_int_gt(calls[1], 30);
   tell_faults(&f, "callbacks");
 }

@@ -227,11 +227,11 @@ void add_shared_steps(Suite *suite) {
   TCase *all = tcase_create("steps");
   tcase_set_timeout(all, 240);
   TCase *wide = wide_case(suite, "more steps");
-  add_every(all, wide, loads, TABLE, 7);
+  add_every(all, wide, loads, TABLE, 11);
   add_table(all, wide, loads_beside, IMPLICIT_BASES);
-  add_every(all, wide, holds, TABLE, 7);
-  add_every(all, wide, warm, 16, 7);
-  add_every(all, wide, total, TABLE, 7);
+  add_every(all, wide, holds, TABLE, 13);
+  add_every(all, wide, warm, 16, 9);
+  add_every(all, wide, total, TABLE, 11);
   add_table(all, wide, turned, 7);
   tcase_add_loop_test(all, loads_rigid, 0, 3);
   add_table(all, wide, loads_fail_together, 3);

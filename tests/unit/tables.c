@@ -8,8 +8,13 @@ TCase *wide_case(Suite *suite, const char *name) {
   return wide;
 }
 
+void add_part(TCase *some, TCase *wide, const TTest *test, int32_t first, int32_t end, int32_t every) {
+  for (int32_t i = first; i < end; ++i)
+    tcase_add_loop_test((i - first) % every ? wide : some, test, i, i + 1);
+}
+
 void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every) {
-  for (int32_t i = 0; i < count; ++i) tcase_add_loop_test(i % every ? wide : some, test, i, i + 1);
+  add_part(some, wide, test, 0, count, every);
 }
 
 void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count) {

@@ -20,7 +20,8 @@ static void follow_impulses(world *w, const char *name) {
   for (int32_t m = 0; m < bodies; ++m) scale += fabs(start[m][0]);
   const double energy = world_info(w).kinetic_energy;
   int64_t closed = 0;
-  for (int32_t i = 0; i < 60; ++i) {
+  const int32_t steps = w->dim == 3 && w->desc.stepper.scheme == MPM_NEWMARK ? 15 : 60;
+  for (int32_t i = 0; i < steps; ++i) {
     double before[3][3];
     for (int32_t m = 0; m < bodies; ++m) momentum_of(w, w->set[m], before[m]);
     const int32_t staged = i % 3 == 0 && w->desc.stepper.scheme != MPM_NEWMARK;

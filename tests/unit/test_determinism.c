@@ -4,6 +4,7 @@
  * axis in turn; without, a sample of it. Each scene runs on every count of threads and on each instruction
  * set. */
 #include "body.h"
+#include "tables.h"
 
 enum { REMOVED_AT = 6, COMPARED_AT = 10 };
 
@@ -295,13 +296,14 @@ Suite *determinism_suite(void) {
   full = getenv("MPM_FULL") != NULL;
   listed = 0;
   static const char *const cases[3] = {"1-D", "2-D", "3-D"};
+  TCase *wide = wide_case(suite, "more of them");
   for (int32_t dim = 1; dim <= 3; ++dim) {
     const int32_t first = listed;
     list_methods(dim);
     TCase *tests = tcase_create(cases[dim - 1]);
     tcase_set_tags(tests, "long");
     tcase_set_timeout(tests, 900);
-    tcase_add_loop_test(tests, same_bits, first, listed);
+    add_part(tests, wide, same_bits, first, listed, full ? 1 : 3);
     suite_add_tcase(suite, tests);
   }
   TCase *hashes = tcase_create("hashes");

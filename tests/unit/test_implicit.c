@@ -1,5 +1,6 @@
 /* Implicit steps: Newmark's rule, convergence of the iteration, reactions, initial accelerations. */
 #include "implicit.h"
+#include "tables.h"
 #include "body.h"
 
 const basis_option *implicit_basis(int32_t i) {
@@ -570,6 +571,6 @@ Suite *implicit_suite(void) {
   suite_add_tcase(suite, implicit_symmetry_case());
   suite_add_tcase(suite, implicit_mirrors_case());
   suite_add_tcase(suite, implicit_failures_case());
-  suite_add_tcase(suite, implicit_large_case());
+  suite_add_tcase(suite, implicit_large_case(wide_case(suite, "more of large bodies")));
   return suite;
 }

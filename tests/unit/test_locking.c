@@ -1,6 +1,7 @@
 /* The locking remedy with laws whose shear makes pressure: forces do the work of the stress on what the law
  * sees, their derivative is the matrix of implicit steps, and nothing else changes. */
 #include "implicit.h"
+#include "tables.h"
 #include "material/laws.h"
 
 static const double h = 0.1;
@@ -614,7 +615,7 @@ Suite *locking_suite(void) {
   tcase_add_loop_test(tc, soils_average_among_themselves, 0, 2);
   tcase_add_loop_test(tc, matrix_is_the_derivative, 0, VARIANTS);
   tcase_add_loop_test(tc, soils_yield, 0, 2 * SOILS);
-  tcase_add_loop_test(tc, matrix_against_differences, 0, SOILS * VARIANTS);
+  add_table(tc, wide_case(suite, "more soils"), matrix_against_differences, SOILS * VARIANTS);
   tcase_add_loop_test(tc, threads_give_the_same_bits, 0, ALL_SCHEMES);
   tcase_add_loop_test(tc, failed_steps_leave_no_trace, 0, ALL_SCHEMES);
   tcase_add_loop_test(tc, positions_that_a_view_has_spoilt, 0, ALL_SCHEMES);

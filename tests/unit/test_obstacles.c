@@ -69,7 +69,8 @@ static void follow(world *w, const mpm_obstacle_desc *d, const arena *of, const 
                dt = arena_dt;
   double sum[3] = {0.0, 0.0, 0.0};
   int64_t closed = 0;
-  for (int32_t i = 0; i < 36; ++i) {
+  const int32_t steps = of->dim == 3 && w->desc.stepper.scheme == MPM_NEWMARK ? 12 : 36;
+  for (int32_t i = 0; i < steps; ++i) {
     double v[2][3], L[2][3];
     const mpm_step_info before = world_info(w);
     ck_ok(w, mpm_obstacle_get_pose(o, NULL, NULL, v[0], NULL));

@@ -1,6 +1,7 @@
 /* A saved state goes on bit by bit: saved between two sorts, with host fields, removed particles, all kinds
  * of walls and periods, through memory and files, on other numbers of threads. */
 #include "body.h"
+#include "tables.h"
 
 enum { BEFORE = 5, AFTER = 12 };
 
@@ -154,7 +155,7 @@ Suite *restart_suite(void) {
   Suite *suite = suite_create("restart");
   TCase *tests = tcase_create("restart");
   tcase_set_timeout(tests, 300);
-  tcase_add_loop_test(tests, goes_on_bit_by_bit, 0, COMBINATIONS);
+  add_table(tests, wide_case(suite, "more combinations"), goes_on_bit_by_bit, COMBINATIONS);
   tcase_add_test(tests, controller);
   tcase_add_loop_test(tests, unsorted, 0, 3);
   suite_add_tcase(suite, tests);

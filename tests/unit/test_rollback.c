@@ -1,6 +1,7 @@
 /* A step that fails leaves everything as it was, says why and where, and the run goes on as if nothing had
  * been tried: every way to fail, in every method, before the first step and in the middle of a run. */
 #include "body.h"
+#include "tables.h"
 
 /* What the host's callbacks are to do wrong, and when: only in the step of this dt. */
 typedef struct trouble {
@@ -429,14 +430,14 @@ END_TEST
 
 Suite *rollback_suite(void) {
   Suite *suite = suite_create("rollback");
-  TCase *tests = tcase_create("rollback");
+  TCase *tests = tcase_create("rollback"), *wide = wide_case(suite, "more combinations");
   tcase_set_timeout(tests, 300);
-  tcase_add_loop_test(tests, refusing_callbacks, 0, COMBINATIONS);
-  tcase_add_loop_test(tests, values_not_finite, 0, COMBINATIONS);
-  tcase_add_loop_test(tests, inversion, 0, COMBINATIONS);
-  tcase_add_loop_test(tests, first_of_the_inverted, 0, COMBINATIONS);
-  tcase_add_loop_test(tests, off_the_grid, 0, COMBINATIONS);
-  tcase_add_loop_test(tests, executor_fails, 0, COMBINATIONS);
+  add_table(tests, wide, refusing_callbacks, COMBINATIONS);
+  add_table(tests, wide, values_not_finite, COMBINATIONS);
+  add_table(tests, wide, inversion, COMBINATIONS);
+  add_table(tests, wide, first_of_the_inverted, COMBINATIONS);
+  add_table(tests, wide, off_the_grid, COMBINATIONS);
+  add_table(tests, wide, executor_fails, COMBINATIONS);
   suite_add_tcase(suite, tests);
   return suite;
 }

@@ -231,7 +231,7 @@ START_TEST(executor_fails) {
   int64_t runs = 0;
   uint64_t hash = 0;
   int32_t failures = 0;
-  for (int64_t at = 0; !at || at <= runs; at += 1 + at / 5) {
+  for (int64_t at = 0; !at || at <= runs; at += 1 + at / 3) {
     parts_plan plan;
     memset(&plan, 0, sizeof plan);
     memset(&u, 0, sizeof u);
@@ -255,7 +255,7 @@ START_TEST(executor_fails) {
     }
   }
   ck_assert_int_gt(runs, 300); /* most of them within the solver */
-  ck_assert_int_gt(failures, 15);
+  ck_assert_int_gt(failures, 10);
 }
 END_TEST
 
@@ -264,12 +264,11 @@ Suite *shared_solvers_suite(void) {
   TCase *all = tcase_create("solvers");
   tcase_set_timeout(all, 240);
   TCase *wide = wide_case(suite, "more solvers");
-  add_every(all, wide, table, TABLE, 7);
+  add_every(all, wide, table, TABLE, 11);
   add_every(all, wide, remedy, 12, 7);
   tcase_add_loop_test(wide, large, 0, 3);
   tcase_add_loop_test(all, chosen, 0, 4);
-  tcase_add_loop_test(all, long_body, 0, 1);
-  tcase_add_loop_test(wide, long_body, 1, 4);
+  tcase_add_loop_test(wide, long_body, 0, 4);
   suite_add_tcase(suite, all);
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 240);

@@ -1,5 +1,6 @@
 /* Walls and periodic axes: nodal conditions, symmetry, reactions, the balance of impulse, work and energy. */
 #include "walls.h"
+#include "tables.h"
 
 enum { CLOUD = 300 };
 static const int32_t wall_kinds[4] = {MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION,
@@ -138,16 +139,16 @@ END_TEST
 
 Suite *walls_suite(void) {
   Suite *suite = suite_create("walls");
-  TCase *tc = tcase_create("walls");
+  TCase *tc = tcase_create("walls"), *wide = wide_case(suite, "more methods");
   tcase_set_timeout(tc, 30.0);
-  tcase_add_loop_test(tc, periodic_grid_has_no_place, 0, 2 * WALL_METHODS);
+  add_table(tc, wide, periodic_grid_has_no_place, 2 * WALL_METHODS);
   tcase_add_loop_test(tc, wall_carries_the_weight, 0, 20);
   tcase_add_loop_test(tc, prescribed_nodes_do_work, 0, METHODS);
   suite_add_tcase(suite, tc);
-  suite_add_tcase(suite, walls_nodes_case());
+  suite_add_tcase(suite, walls_nodes_case(wide));
   suite_add_tcase(suite, walls_symmetry_case());
   suite_add_tcase(suite, walls_space_case());
-  suite_add_tcase(suite, walls_balance_case());
+  suite_add_tcase(suite, walls_balance_case(wide));
   suite_add_tcase(suite, walls_flow_case());
   return suite;
 }

@@ -20,10 +20,10 @@ int32_t wall_is_linear(int32_t kind);
 /* Index of the node on a face, as guide.md numbers them. */
 int64_t wall_face_node(const mpm_grid_desc *grid, int32_t face);
 
-TCase *walls_nodes_case(void);
+TCase *walls_nodes_case(TCase *wide);
 TCase *walls_symmetry_case(void);
 TCase *walls_space_case(void);
-TCase *walls_balance_case(void);
+TCase *walls_balance_case(TCase *wide);
 TCase *walls_flow_case(void);
 
 #endif

@@ -1,5 +1,6 @@
 /* The balance of walls: impulse, work and energy, for every basis and kind of wall. */
 #include "walls.h"
+#include "tables.h"
 
 enum { CLOUD = 160 };
 
@@ -115,10 +116,10 @@ START_TEST(impulses_balance_on_tiny_grids) {
 }
 END_TEST
 
-TCase *walls_balance_case(void) {
+TCase *walls_balance_case(TCase *wide) {
   TCase *tc = tcase_create("balance");
   tcase_set_timeout(tc, 60.0);
-  tcase_add_loop_test(tc, impulses_balance, 0, WALL_METHODS);
-  tcase_add_loop_test(tc, impulses_balance_on_tiny_grids, 0, WALL_METHODS);
+  add_table(tc, wide, impulses_balance, WALL_METHODS);
+  add_table(tc, wide, impulses_balance_on_tiny_grids, WALL_METHODS);
   return tc;
 }

@@ -1,6 +1,7 @@
 /* What walls do to nodes, for every basis, at faces, edges and corners,
  * and on grids of one to three cells. */
 #include "walls.h"
+#include "tables.h"
 
 enum { CLOUD = 160 };
 static const double time_step = 1e-5;
@@ -236,11 +237,11 @@ START_TEST(faces_keep_affine_fields) {
 }
 END_TEST
 
-TCase *walls_nodes_case(void) {
+TCase *walls_nodes_case(TCase *wide) {
   TCase *tc = tcase_create("nodes");
   tcase_set_timeout(tc, 60.0);
-  tcase_add_loop_test(tc, nodes_obey_walls, 0, WALL_METHODS);
-  tcase_add_loop_test(tc, tiny_grids_obey_walls, 0, WALL_METHODS);
+  add_table(tc, wide, nodes_obey_walls, WALL_METHODS);
+  add_table(tc, wide, tiny_grids_obey_walls, WALL_METHODS);
   tcase_add_loop_test(tc, faces_keep_affine_fields, 0, BASES);
   tcase_add_loop_test(tc, material_on_walls_stands, 0, 2 * BASES);
   return tc;
