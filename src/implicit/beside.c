@@ -57,10 +57,6 @@ double mpmi_whole_mass(const mpmi_balance *balance, int64_t row) {
   return balance->newton->mass[row] * balance->newton->copies[row];
 }
 
-static int32_t body_of(const mpmi_balance *balance, int64_t slot) {
-  return balance->layout->blocks.body[slot / balance->layout->blocks.nodes];
-}
-
 /* Returns 1 when a component of a row takes part: where it is free, or 0 only for the body is symmetric. */
 static int32_t takes_part(const mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_matrix *A = &balance->newton->matrix;
@@ -90,7 +86,7 @@ int64_t mpmi_next_beside(const mpmi_balance *balance, int64_t row, int32_t c, do
     if (active < 0) continue;
     const mpmi_active_node *node = &newton->active[active];
     if (node->row == row || !(mpmi_whole_mass(balance, node->row) > above) ||
-        (c >= 0 && !takes_part(balance, node->row, c)) || body_of(balance, slot) != body_of(balance, from))
+        (c >= 0 && !takes_part(balance, node->row, c)))
       continue;
     *sign = c < 0 ? 1.0 : mirror[c] < 0 ? node->sign[c] : -node->sign[c];
     return node->row;
