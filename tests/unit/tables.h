@@ -7,8 +7,8 @@
 
 /* A case for what takes long because it is much: it has the tag "wide". */
 TCase *wide_case(Suite *suite, const char *name);
-/* Adds every so many of a table of tests to a case, and the others to a wide one: of a part of the table, of all of it, and
- * every fifth. */
+/* Adds every so many of a table of tests to a case, and the others to a wide one: of a part of the table, of
+ * all of it, and every fifth. */
 void add_part(TCase *some, TCase *wide, const TTest *test, int32_t first, int32_t end, int32_t every);
 void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every);
 void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count);
