@@ -238,7 +238,7 @@ check-valgrind: $(UNIT)
 
 # libFuzzer on saved states, packed particles, descriptors, small clouds of particles and problems in parts; what is new stays in $(FUZZ)/fuzz/corpus.
 FUZZ = $(BUILD)-fuzz
-FUZZ_TARGETS ?= state packed descriptors clouds meshes parts
+FUZZ_TARGETS ?= clouds parts state packed descriptors meshes
 FUZZ_SECONDS ?= 600
 FUZZ_FLAGS = -g1 -fno-omit-frame-pointer -fno-sanitize-recover=all -fsanitize=address,undefined
 FUZZ_CC ?= clang

@@ -38,17 +38,23 @@ readme() { # program
 
 for compiler in "${compilers[@]}"; do
   for standard in -std=c11 -std=gnu17; do
-    $compiler $standard $warnings -fsyntax-only "$made/mpm.c"
+    $compiler $standard $warnings -fsyntax-only "$made/mpm.c" & syntax+=($!)
   done
 done
+accepted() {
+  local pid
+  for pid in "${syntax[@]}"; do wait "$pid" || fail "a compiler does not take mpm.c"; done
+}
 if [ "$mode" = quick ]; then
   # shellcheck disable=SC2086
   $CC $warnings -I"$made" "$scratch/block.c" "$made/mpm.c" -lm $threads -o "$scratch/block"
+  accepted
   readme "$scratch/block"
   echo "check-amalgamation: no warning from ${compilers[*]}; $(cat "$scratch/block.out")"
   exit 0
 fi
 
+accepted
 # Hosts of a folder mpm/ find the one header there.
 for header in include/mpm/*.h; do echo '#include "../../mpm.h"' > "$scratch/include/mpm/$(basename "$header")"; done
 cp "$made/mpm.h" "$scratch/mpm.h"

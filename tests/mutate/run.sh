@@ -77,7 +77,7 @@ try() { # a fault's number or "none", suite
   rm -rf "$tree"
   printf '%s %s: %s, %s s%s\n' "$1" "$2" "$verdict" $((SECONDS - begin)) "${what:+: ${what//$'\n'/ }}"
 }
-export limit=$((300 * ${CK_TIMEOUT_MULTIPLIER:-1})) failed=':[0-9]+:[FE]:|\] +(FAILED|MET|BROKEN)$|^(mpi|petsc): .* processes: status [0-9]+$|^mpi: .*, wanted [0-9a-f]+, |^petsc: .*: from [0-9]+ to [0-9]+ iterations$|^[1-3]-D .*: (other bits|failed)'
+export limit=$((1500 * ${CK_TIMEOUT_MULTIPLIER:-1})) failed=':[0-9]+:[FE]:|\] +(FAILED|MET|BROKEN)$|^(mpi|petsc): .* processes: status [0-9]+$|^mpi: .*, wanted [0-9a-f]+, |^petsc: .*: from [0-9]+ to [0-9]+ iterations$|^[1-3]-D .*: (other bits|failed)'
 export -f compile units suite try
 
 cd "$BUILD/mutate/whole"

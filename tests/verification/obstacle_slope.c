@@ -117,6 +117,36 @@ static void settled_disc(const floor_kind *kind, FILE *table) {
   }
 }
 
+/* What slides on prescribed particles, by the normals that it has there: those before it lean forwards, and
+ * nodes behind it cannot pull. */
+static void friction_by_normals(FILE *table) {
+  static const char *const by[4] = {"logistic", "discriminant", "gradient", "fixed"};
+  const double friction = 0.1, g = slide_gravity, exact_spin = 2.0 * friction * g * cos(angle) * end / radius,
+               exact_way = 0.5 * g * (sin(angle) - friction * cos(angle)) * end * end;
+  for (int32_t normal = MPM_NORMAL_LOGISTIC; normal <= MPM_NORMAL_FIXED; ++normal)
+    for (int32_t k = 10; k <= 20; k += 10) {
+      char what[96];
+      const slide s = {.support = ON_BODY,
+                       .basis = MPM_BSPLINE2,
+                       .normal = normal,
+                       .settled = 1,
+                       .keeps = 0.96,
+                       .h = radius / k,
+                       .radius = radius,
+                       .angle = angle,
+                       .friction = friction,
+                       .shift = 0.1,
+                       .end = end};
+      const slide_outcome o = slide_run(&s);
+      fprintf(table, "slides settled,%s normals,%g,%g,%.6f,%.6f,%.5f,%.5f,%.5f,%.5f\n", by[normal], s.h,
+              s.shift, o.way, exact_way, o.spin, exact_spin, o.friction, o.weight);
+      snprintf(what, sizeof what, "rigid body: settled disc slides, %s normals, h = R/%d: friction / 0.1",
+               by[normal], (int)k);
+      verify_judge(what, o.friction / friction, 0.95, 1.05, "Coulomb's law; set tolerance",
+                   normal == MPM_NORMAL_FIXED ? NULL : "normals before the disc lean forwards");
+    }
+}
+
 int main(int argc, char **argv) {
   verify_begin("obstacle_slope", argc, argv);
   FILE *block_table = verify_csv("obstacle_slope_block"), *disc_table = verify_csv("obstacle_slope_disc");
@@ -127,6 +157,7 @@ int main(int argc, char **argv) {
     for (int32_t motion = ROLLS; motion <= SLIDES; ++motion) disc(&kinds[k], motion, disc_table);
   for (int32_t k = 0; k < (verify_quick() ? 0 : KINDS); ++k)
     if (kinds[k].places == 2 && !(kinds[k].slab > 0.0)) settled_disc(&kinds[k], disc_table);
+  if (!verify_quick()) friction_by_normals(disc_table);
   fclose(block_table);
   fclose(disc_table);
   return verify_end();

@@ -96,7 +96,7 @@ slide_outcome slide_run(const slide *a) {
     verify_fill_box(&w, body, two, (const double[]){width, height}, 2);
   verify_place(&w, body, -a->turn, lift);
   if (a->support == ON_BODY) lay_ground(&w, a, lift);
-  support on = {.kind = a->support};
+  support on = {.kind = a->support, .normal = a->normal};
 
   /* A block that is let go on the slope settles sticking; what is to move is free to find its place. */
   const int32_t sticks = !(a->speed > 0.0 || a->radius > 0.0);

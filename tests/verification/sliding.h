@@ -8,6 +8,7 @@
 
 typedef struct slide {
   int32_t support, basis; /* support: ON_BODY is one of prescribed particles */
+  int32_t normal;         /* with ON_BODY */
   int32_t settled;        /* 1: under damping, before it is let go */
   double keeps;     /* share of its velocity that a step of that leaves it; 0: 0.99, in which it swings */
   double push;      /* velocity down the slope that a block gets which has settled sticking there */

@@ -5,6 +5,9 @@ void support_lay(verify_world *w, support *s, double friction, double turn, cons
   mpm_obstacle_desc desc =
       verify_obstacle_defaults(&contact, MPM_SHAPE_PLANE, MPM_MOTION_FIXED, friction, turn);
   if (s->kind == ON_BODY) {
+    contact.normal = s->normal;
+    contact.detection = MPM_DETECT_GAP;
+    if (s->normal == MPM_NORMAL_FIXED) contact.direction[1] = -1.0;
     verify_ok(w, mpm_stepper_set_contact(w->stepper, 0, 1, &contact));
   } else if (s->kind == ON_WALL) {
     verify_ok(w, mpm_stepper_set_wall(w->stepper, MPM_Y_MIN, MPM_WALL_FRICTION, friction));

@@ -8,8 +8,8 @@
 enum { ON_BODY, ON_PLANE, ON_WALL };
 
 typedef struct support {
-  int32_t kind;
-  mpm_obstacle *plane; /* NULL at first */
+  int32_t kind, normal; /* normal: with ON_BODY, an MPM_NORMAL_...; a fixed one is axis y */
+  mpm_obstacle *plane;  /* NULL at first */
 } support;
 
 /* Puts it there, or gives it another friction. A plane goes through the point; its normal is axis y turned
