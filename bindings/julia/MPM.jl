@@ -2348,7 +2348,8 @@ Adds n markers.
 - first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
 
 In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite, a position is outside the grid,
-or the surface would have more than 2^28 markers; nothing is added. MPM_E_STATE during a staged step.
+the surface would have more than 2^28 markers, or the edge of a ring, which is its area over its radius, would reach
+beyond the axis; nothing is added. MPM_E_STATE during a staged step.
 """
 function mpm_surface_add(surface, n, position, area, first_id)
     return ccall((:mpm_surface_add, libmpm), Int32, (Ptr{mpm_surface}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Int64}),

@@ -134,8 +134,8 @@ MPM_API mpm_status mpm_surface_set_velocity(mpm_surface *surface, mpm_marker_vel
  * - first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
  *
  * In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite, a position is
- * outside the grid, or the surface would have more than 2^28 markers; nothing is added. MPM_E_STATE during a
- * staged step.
+ * outside the grid, the surface would have more than 2^28 markers, or the edge of a ring, which is its area
+ * over its radius, would reach beyond the axis; nothing is added. MPM_E_STATE during a staged step.
  */
 MPM_API mpm_status mpm_surface_add(mpm_surface *surface, int64_t n, const double *position,
                                    const double *area, int64_t *first_id);

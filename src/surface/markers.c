@@ -62,7 +62,15 @@ void mpmi_marker_set_area(mpmi_marker *m, const mpm_grid *grid, const double *ar
 }
 
 mpm_status mpmi_marker_check_area(const mpm_surface *s, int64_t which, double radius, const double *area) {
-  if (!mpmi_is_axisymmetric(s->grid) || radius > 0.0 || !(fabs(area[0]) + fabs(area[1]) > 0.0)) return MPM_OK;
+  const double much = 1e-9; /* more than rounding */
+  if (!mpmi_is_axisymmetric(s->grid) || !(fabs(area[0]) + fabs(area[1]) > 0.0)) return MPM_OK;
+  if (radius > 0.0 && fabs(area[1]) <= (2.0 + much) * radius * radius) return MPM_OK;
+  if (radius > 0.0)
+    return mpmi_fail(
+        s->context, MPM_E_ARG,
+        "marker %lld: area is (%g, %g) at the radius %g, so that its edge is %g wide and reaches "
+        "beyond the axis: add several smaller ones",
+        (long long)which, area[0], area[1], radius, fabs(area[1]) / radius);
   return mpmi_fail(
       s->context, MPM_E_ARG,
       "marker %lld: area is (%g, %g), but it lies on the axis, where a ring has none: place it at "
@@ -235,6 +243,7 @@ static void keep_inside(const mpm_grid *grid, mpmi_marker *m) {
   mpmi_grid_place(grid, x, 1, NULL, 0);
   if (mpmi_is_axisymmetric(grid)) {
     const double was = m->edge[1][2];
+    m->position[0] = fmax(m->position[0], 0.0);
     m->reference_edge[1][2] = m->reference[0];
     mpmi_marker_set_radius(m, grid);
     m->reference_area *= was > 0.0 ? m->edge[1][2] / was : 1.0;
@@ -264,6 +273,20 @@ mpm_status mpmi_markers_split(mpm_context *c, const mpm_grid *grid, mpmi_markers
   return MPM_OK;
 }
 
+/* Returns how many markers those of a list come to: each of their edges is halved until it is short. */
+static double split_count(const mpmi_markers *markers, const mpm_grid *grid, double spacing) {
+  double count = 0.0;
+  for (int64_t i = 0; i < markers->count; ++i) {
+    double of = 1.0;
+    for (int32_t e = 0; e < (mpmi_is_axisymmetric(grid) ? 1 : grid->dim - 1); ++e) {
+      const double parts = length_of(markers->at[i].edge[e]) / spacing;
+      of *= parts > 1.0 ? exp2(ceil(log2(parts))) : 1.0;
+    }
+    count += of;
+  }
+  return count;
+}
+
 mpm_status mpm_surface_refine(mpm_surface *s, double spacing, int64_t *added) {
   MPMI_ENTER(s, MPMI_SURFACE);
   mpm_context *c = s->context;
@@ -271,6 +294,10 @@ mpm_status mpm_surface_refine(mpm_surface *s, double spacing, int64_t *added) {
   if (!status && (!(spacing > 0.0) || !isfinite(spacing)))
     status = mpmi_fail(c, MPM_E_ARG, "spacing is %g, must be positive and finite", spacing);
   const int64_t had = s->now.count;
+  const double come = status ? 0.0 : split_count(&s->now, s->grid, spacing);
+  if (come > (double)MPMI_MOST_MARKERS)
+    status = mpmi_fail(c, MPM_E_ARG, "a spacing of %g makes %g markers, a surface has at most %d", spacing,
+                       come, (int)MPMI_MOST_MARKERS);
   if (!status) status = mpmi_markers_copy(c, &s->now, &s->next);
   if (!status) status = mpmi_markers_split(c, s->grid, &s->next, spacing, 0);
   if (status) return status;

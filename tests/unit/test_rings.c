@@ -310,6 +310,12 @@ START_TEST(areas_follow_the_ring) {
     ck_within("reference", halves_reference[i], hypot(halves[i], halves[all + i]) / grown, 1e-13);
   ck_within("sum", sum_of(all, halves + all), sum_of(n, after + n), 1e-13);
   ck_refused(&w, mpm_surface_add(s, 1, on_axis, area, NULL), MPM_E_ARG, "lies on the axis");
+  /* at r its edge is as wide as 2 r at the most: else a half of it would lie beyond the axis */
+  const double near_axis[] = {0.1, 1.5}, wide[] = {0.0, 0.021}, fits[] = {0.0, 0.02};
+  ck_refused(&w, mpm_surface_add(s, 1, near_axis, wide, NULL), MPM_E_ARG, "edge is 0.21 wide");
+  ck_ok(&w, mpm_surface_add(s, 1, near_axis, fits, NULL));
+  ck_refused(&w, mpm_surface_set(s, "area", MPM_F64, 2, 1, &(int64_t){all}, wide), MPM_E_ARG,
+             "reaches beyond the axis");
   free(before);
   free(after);
   free(halves);

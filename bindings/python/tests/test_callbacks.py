@@ -377,6 +377,8 @@ class Solver(unittest.TestCase):
             for row in range(system.rows):
                 dense[row, indices[indptr[row]:indptr[row + 1]]] = data[indptr[row]:indptr[row + 1]]
             np.testing.assert_allclose(system.apply(rhs), dense @ rhs, rtol=1e-9, atol=1e-9)
+            with self.assertRaisesRegex(ValueError, r"\(1,\)"):
+                system.apply(np.zeros(1))
             seen.append(system.position.shape)
             return np.linalg.solve(dense, rhs)
 

@@ -132,6 +132,30 @@ class Views(unittest.TestCase):
         one.set("velocity", 0.0, ids=[5])
         stepper.step(1e-3)
 
+    def test_masks_are_no_ids(self):
+        one, stepper = block()
+        mask = np.arange(len(one)) == 3
+        for ids in (mask, [0.0, 2.9]):
+            for call in (one.remove, lambda ids: one.set("velocity", 1.0, ids=ids), lambda ids: one.get("mass", ids=ids)):
+                with self.assertRaisesRegex(TypeError, "whole numbers"):
+                    call(ids)
+        count = len(one)
+        one.remove(np.flatnonzero(mask))
+        self.assertEqual(len(one), count - 1)
+        one.remove([])
+
+    def test_nodes_without_sets(self):
+        one, stepper = block(flip=0)
+        stepper.step(1e-3)
+        stepper.remove(one)
+        try:
+            count = len(stepper.nodes("mass"))
+        except mpm.Error:
+            count = 0
+        self.assertGreaterEqual(count, 0)
+        gc.collect()
+        stepper.close()
+
     def test_nodes(self):
         one, stepper = block(flip=0)
         stepper.step(1e-3)

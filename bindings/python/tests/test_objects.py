@@ -1,7 +1,9 @@
 """Lifetimes, contact, obstacles, surfaces, saved states, files, pictures."""
+import copy
 import gc
 import io
 import os
+import pickle
 import resource
 import tempfile
 import unittest
@@ -453,6 +455,22 @@ class States(unittest.TestCase):
         models = mpm.models()
         self.assertIsNone(models["neo_hookean"]["E"]["default"])
         self.assertEqual(models["j2"][None][0][0], "plastic_strain")
+
+
+class Copies(unittest.TestCase):
+    def test_errors_and_infos(self):
+        one, stepper = block()
+        info = stepper.step(1e-3)
+        for made in (pickle.loads(pickle.dumps(info)), copy.copy(info), copy.deepcopy(info)):
+            self.assertEqual((made.t, made.kinetic_energy), (info.t, info.kinetic_energy))
+        one.set("velocity", (1e6, 0.0))
+        with self.assertRaises(mpm.StepError) as caught:
+            stepper.step(1e-3)
+        for made in (pickle.loads(pickle.dumps(caught.exception)), copy.copy(caught.exception)):
+            self.assertIs(type(made), mpm.StepError)
+            self.assertEqual((str(made), made.status, made.text),
+                             (str(caught.exception), caught.exception.status, caught.exception.text))
+            self.assertEqual(made.info.cause, caught.exception.info.cause)
 
 
 class Pictures(unittest.TestCase):

@@ -43,11 +43,20 @@ def rows(array, tensor=False):
     return array.T
 
 
+def whole(values, what):
+    """Whole numbers as they are: a mask or a fraction would be taken for others."""
+    array = np.atleast_1d(values)
+    if array.size and array.dtype.kind not in "iu":
+        raise TypeError(f"{what} are of {array.dtype}, must be whole numbers" +
+                        (": of a mask, take numpy.flatnonzero" if array.dtype.kind == "b" else ""))
+    return np.ascontiguousarray(array, np.int64)
+
+
 def chosen(ids, count):
     """Ids for C and how many they are; of all `count` items where ids is None."""
     if ids is None:
         return None, count
-    ids = np.ascontiguousarray(np.atleast_1d(ids), np.int64)
+    ids = whole(ids, "ids")
     return ids, len(ids)
 
 

@@ -1,5 +1,6 @@
 """Contexts, and what all handles share: who owns whom, and the end of both."""
 import ctypes
+import warnings
 import weakref
 
 from . import _api
@@ -54,6 +55,11 @@ class Handle:
             return
         self._context._check(type(self)._destroy(self._address))
         self._end.detach()
+
+    def _given_back(self, status):
+        if status:
+            text = lib.mpm_last_error(self._context._address).decode()
+            warnings.warn(f"MPM_{_api.Status(status).name}: {text}", RuntimeWarning, stacklevel=2)
 
     def __enter__(self):
         return self

@@ -58,6 +58,9 @@ class Error(Exception):
         self.status = status
         self.text = text
 
+    def __reduce__(self):
+        return type(self), (self.status, self.text), self.__dict__
+
 
 class StepError(Error):
     """A step that was not done; the state is as it was before it. Of `status` CUT_DT to SINGULAR a smaller dt may help.

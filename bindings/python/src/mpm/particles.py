@@ -1,11 +1,10 @@
 """Sets of particles: filled, changed, read by id, or seen where they lie."""
 import ctypes
-import warnings
 
 import numpy as np
 
 from . import _api
-from ._arrays import TYPES, address, chosen, columns, doubles, lend, rows
+from ._arrays import TYPES, address, chosen, columns, doubles, lend, rows, whole
 from ._handles import Handle
 from ._library import documented, lib
 
@@ -71,7 +70,7 @@ class Particles(Handle):
         shape = lambda values: None if values is None else columns(np.broadcast_to(values, (n, self.dim)), self.dim, n, np.float64)
         position, velocity, size = shape(position), shape(velocity), shape(size)
         volume = np.ascontiguousarray(np.broadcast_to(np.asarray(volume, np.float64), (n,)))
-        ids = None if ids is None else np.ascontiguousarray(ids, np.int64)
+        ids = None if ids is None else whole(ids, "ids")
         if ids is not None and ids.shape != (n,):
             raise ValueError(f"{ids.shape} ids for {n} particles")
         first = ctypes.c_int64()
@@ -130,7 +129,7 @@ class Particles(Handle):
     @documented("mpm_particles_remove")
     def remove(self, ids):
         """Removes particles by id."""
-        ids = np.ascontiguousarray(np.atleast_1d(ids), np.int64)
+        ids = whole(ids, "ids")
         self._context._check(lib.mpm_particles_remove(self, len(ids), address(ids)))
 
     @documented("mpm_particles_pack")
@@ -225,11 +224,6 @@ class Particles(Handle):
         access = _api.READ | (_api.WRITE if write else 0)
         self._context._check(lib.mpm_particles_map(self, field.encode(), access, ctypes.byref(view)))
         return lend(view, self, self._given_back)
-
-    def _given_back(self, status):
-        if status:
-            text = lib.mpm_last_error(self._context._address).decode()
-            warnings.warn(f"MPM_{_api.Status(status).name}: {text}", RuntimeWarning, stacklevel=2)
 
     @documented("mpm_particles_set_geostatic")
     def set_geostatic(self, axis, gravity, surface, K0, surcharge=0.0):

@@ -22,6 +22,8 @@ class StepInfo:
         self._struct = struct
 
     def __getattr__(self, name):
+        if name == "_struct":  # not there yet: a copy is being made
+            raise AttributeError(name)
         value = getattr(self._struct, name)
         return np.array(value) if name in _VECTORS else value
 
@@ -359,7 +361,7 @@ class Stepper(Handle):
 
     @documented("mpm_step_begin")
     def begin(self, dt):
-        """Makes the first part of a step in parts; grid() and end() follow, or abort()."""
+        """Makes the first part of a step in parts; update_grid() and end() follow, or abort()."""
         self._context._check(lib.mpm_step_begin(self, dt))
 
     @documented("mpm_step_grid")
@@ -384,7 +386,7 @@ class Stepper(Handle):
         view = _api.view(struct_size=ctypes.sizeof(_api.view))
         access = _api.READ | (_api.WRITE if write else 0)
         self._context._check(lib.mpm_grid_map(self, body, field.encode(), access, ctypes.byref(view)))
-        return lend(view, self, self._sets[0]._given_back)
+        return lend(view, self, self._given_back)
 
     # ---- reports ----
 

@@ -4,7 +4,7 @@ import ctypes
 import numpy as np
 
 from . import _api
-from ._arrays import TYPES, Batch, address, chosen, columns, doubles, rows, scalar, vector
+from ._arrays import TYPES, Batch, address, chosen, columns, doubles, rows, scalar, vector, whole
 from ._handles import Handle, descriptor, fill
 from ._library import documented, lib
 
@@ -135,7 +135,7 @@ class Surface(Handle):
     @documented("mpm_surface_remove")
     def remove(self, ids):
         """Removes markers by id: all or none."""
-        ids = np.ascontiguousarray(np.atleast_1d(ids), np.int64)
+        ids = whole(ids, "ids")
         self._context._check(lib.mpm_surface_remove(self, len(ids), address(ids)))
 
     @documented("mpm_surface_refine")

@@ -26,6 +26,8 @@ class System:
     def apply(self, x):
         """The matrix times a vector."""
         x, y = np.ascontiguousarray(x, np.float64), np.empty(self.rows)
+        if x.shape != (self.rows,):
+            raise ValueError(f"x of shape {x.shape} where {(self.rows,)} is wanted")
         _refuse(lib.mpm_operator_apply(self._operator, address(x), address(y)))
         return y
 

@@ -2979,7 +2979,8 @@ extern "C" {
     /// - first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
     ///
     /// In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite, a position is outside the
-    /// grid, or the surface would have more than 2^28 markers; nothing is added. MPM_E_STATE during a staged step.
+    /// grid, the surface would have more than 2^28 markers, or the edge of a ring, which is its area over its radius,
+    /// would reach beyond the axis; nothing is added. MPM_E_STATE during a staged step.
     pub fn mpm_surface_add(
         surface: *mut mpm_surface,
         n: i64,
