@@ -273,14 +273,15 @@ mpm_status mpmi_markers_split(mpm_context *c, const mpm_grid *grid, mpmi_markers
   return MPM_OK;
 }
 
-/* Returns how many markers those of a list come to: each of their edges is halved until it is short. */
+/* Returns how many markers those of a list come to, or some more than there may be: each of their edges is
+ * halved until it is short. */
 static double split_count(const mpmi_markers *markers, const mpm_grid *grid, double spacing) {
   double count = 0.0;
   for (int64_t i = 0; i < markers->count; ++i) {
     double of = 1.0;
     for (int32_t e = 0; e < (mpmi_is_axisymmetric(grid) ? 1 : grid->dim - 1); ++e) {
-      const double parts = length_of(markers->at[i].edge[e]) / spacing;
-      of *= parts > 1.0 ? exp2(ceil(log2(parts))) : 1.0;
+      double parts = length_of(markers->at[i].edge[e]) / spacing;
+      for (; parts > 1.0 && of <= (double)MPMI_MOST_MARKERS; parts *= 0.5) of *= 2.0;
     }
     count += of;
   }
@@ -296,8 +297,8 @@ mpm_status mpm_surface_refine(mpm_surface *s, double spacing, int64_t *added) {
   const int64_t had = s->now.count;
   const double come = status ? 0.0 : split_count(&s->now, s->grid, spacing);
   if (come > (double)MPMI_MOST_MARKERS)
-    status = mpmi_fail(c, MPM_E_ARG, "a spacing of %g makes %g markers, a surface has at most %d", spacing,
-                       come, (int)MPMI_MOST_MARKERS);
+    status = mpmi_fail(c, MPM_E_ARG, "a spacing of %g makes more than %d markers", spacing,
+                       (int)MPMI_MOST_MARKERS);
   if (!status) status = mpmi_markers_copy(c, &s->now, &s->next);
   if (!status) status = mpmi_markers_split(c, s->grid, &s->next, spacing, 0);
   if (status) return status;
