@@ -203,8 +203,8 @@ check-setup:
 
 # Long runs of the method add nothing under a sanitizer but time, and all runs take longer.
 SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS="long clock wide" EXAMPLES_RUN="$(SANITIZED_EXAMPLES)" $(MAKE) OPT=-O1 KERNEL_OPT="$(SANITIZED_KERNEL_OPT)" TEST_OPT=-O0 NO_UNDEFINED= check-unit check-examples
-# Kernels are one large function for each basis: without checks in line and with registers given out function by function
-# they compile in half of the time.
+# Kernels are one large function for each basis: they compile faster without checks in line and with registers given out
+# function by function.
 SANITIZED_KERNEL_OPT = -O1
 check-asan: SANITIZED_KERNEL_OPT = -O1 $(if $(findstring clang,$(CC)),-mllvm -asan-instrumentation-with-call-threshold=0,-fira-region=one --param asan-instrumentation-with-call-threshold=0)
 # Without a fork for each test leaks are looked for once in each suite: with it that takes longer than the tests.
@@ -242,10 +242,9 @@ FUZZ_TARGETS ?= clouds parts state packed descriptors meshes
 FUZZ_SECONDS ?= 600
 FUZZ_FLAGS = -g1 -fno-omit-frame-pointer -fno-sanitize-recover=all -fsanitize=address,undefined
 FUZZ_CC ?= clang
-FUZZ_KERNEL_OPT ?= -O1
 #: fuzz-programs         the fuzz targets, by clang, in $(BUILD)-fuzz
 fuzz-programs:
-	@$(MAKE) CC=$(FUZZ_CC) BUILD=$(FUZZ) $(ONE_SET) OPT=-O1 KERNEL_OPT="$(FUZZ_KERNEL_OPT) -Wno-pass-failed" CFLAGS="$(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp" \
+	@$(MAKE) CC=$(FUZZ_CC) BUILD=$(FUZZ) $(ONE_SET) OPT=-O1 KERNEL_OPT="-O1 -Wno-pass-failed" CFLAGS="$(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp" \
 	  $(FUZZ_TARGETS:%=$(FUZZ)/fuzz/%)
 $(BUILD)/fuzz/%: tests/fuzz/%.c $(wildcard tests/fuzz/*.h) $(STATIC_LIB) Makefile tests/tests.mk
 	@mkdir -p $(@D)
