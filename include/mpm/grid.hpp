@@ -31,7 +31,7 @@ struct grid_core {
   grid_core(const grid_core &) = delete;
   grid_core &operator=(const grid_core &) = delete;
   ~grid_core() {
-    mpm_grid_destroy(handle);
+    context->leave([held = handle] { return mpm_grid_destroy(held) == MPM_OK; });
   }
 };
 

@@ -28,11 +28,22 @@ struct context_core {
   context_core(const context_core &) = delete;
   context_core &operator=(const context_core &) = delete;
   ~context_core() {
+    settle();
     mpm_context_destroy(handle);
   }
 
+  /** Gives an object or a view up by a function that tells whether that is done. In a callback the library
+   * refuses it; then it is tried again after the call. */
+  void leave(std::function<bool()> give_up) noexcept {
+    if (give_up()) return;
+    try {
+      late_.push_back(std::move(give_up));
+    } catch (const std::exception &) { // there is no memory to remember it: it is leaked
+    }
+  }
   /** Gives the outcome of a call; throws error, or what a callback threw, if status < 0. */
   outcome result(mpm_status status) {
+    const at_end settling{*this}; // when the text of the error has been read
     const std::exception_ptr exception = exceptions.take(MPM_OK);
     if (status == MPM_OK) return {};
     if (status == MPM_E_CALLBACK && exception) std::rethrow_exception(exception);
@@ -43,6 +54,26 @@ struct context_core {
   void check(mpm_status status) {
     result(status).or_throw();
   }
+
+private:
+  struct at_end {
+    context_core &context;
+    ~at_end() {
+      context.settle();
+    }
+  };
+
+  /** Tries what waits until nothing more is done: objects may need each other. */
+  void settle() noexcept {
+    for (std::size_t before = late_.size() + 1; late_.size() < before && !late_.empty();) {
+      std::vector<std::function<bool()>> tried; // what is given up may leave more
+      tried.swap(late_);
+      before = tried.size();
+      for (auto &one : tried) leave(std::move(one));
+    }
+  }
+
+  std::vector<std::function<bool()>> late_; // what the library has refused to take back
 };
 
 } // namespace detail

@@ -45,7 +45,7 @@ struct material_core {
   material_core(const material_core &) = delete;
   material_core &operator=(const material_core &) = delete;
   ~material_core() {
-    mpm_material_destroy(handle);
+    context->leave([held = handle] { return mpm_material_destroy(held) == MPM_OK; });
   }
 
   /** The law as C calls it; user is a material_core. */

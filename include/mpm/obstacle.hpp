@@ -53,7 +53,7 @@ struct obstacle_core {
   obstacle_core(const obstacle_core &) = delete;
   obstacle_core &operator=(const obstacle_core &) = delete;
   ~obstacle_core() {
-    mpm_obstacle_destroy(handle);
+    context->leave([held = handle] { return mpm_obstacle_destroy(held) == MPM_OK; });
   }
 
   /** The mpm_distance_fn that calls the host's function; user is an obstacle_core. */

@@ -52,7 +52,7 @@ struct particles_core {
   particles_core(const particles_core &) = delete;
   particles_core &operator=(const particles_core &) = delete;
   ~particles_core() {
-    mpm_particles_destroy(handle);
+    context->leave([held = handle] { return mpm_particles_destroy(held) == MPM_OK; });
   }
 };
 

@@ -110,9 +110,11 @@ struct stepper_core {
   stepper_core(const stepper_core &) = delete;
   stepper_core &operator=(const stepper_core &) = delete;
   ~stepper_core() {
-    if (mpm_stepper_destroy(handle) == MPM_OK) return;
-    mpm_step_abort(handle);
-    mpm_stepper_destroy(handle);
+    context->leave([held = handle] {
+      if (mpm_stepper_destroy(held) == MPM_OK) return true;
+      mpm_step_abort(held);
+      return mpm_stepper_destroy(held) == MPM_OK;
+    });
   }
 
   /** Does as context_core::result(), for calls that run callbacks: the exception that comes out is that of

@@ -39,7 +39,7 @@ struct surface_core {
   surface_core(const surface_core &) = delete;
   surface_core &operator=(const surface_core &) = delete;
   ~surface_core() {
-    mpm_surface_destroy(handle);
+    context->leave([held = handle] { return mpm_surface_destroy(held) == MPM_OK; });
   }
 
   /** The mpm_traction_fn that calls the host's function; user is a surface_core. */

@@ -28,17 +28,24 @@ public:
     std::swap(view_, taken.view_);
     return *this;
   }
-  /** Gives the memory back. Bad values that were written do not throw here: they bar the set from steps,
-   * which say so. */
+  /** Gives the memory back; in a callback, when the call is over. Bad values that were written do not throw
+   * here: they bar the set from steps, which say so. */
   ~view() {
-    if (view_.owner) mpm_view_release(&view_);
+    if (!view_.owner) return;
+    context_->leave([keep = keep_, held = view_]() mutable {
+      mpm_view_release(&held);
+      return !held.owner;
+    });
   }
-  /** Gives the memory back; throws error (MPM_E_ARG) if bad values were written. */
+  /** Gives the memory back; throws error: MPM_E_ARG if bad values were written, MPM_E_STATE in a callback,
+   * where the view stays lent. */
   void release() {
-    if (!context_) throw error(MPM_E_STATE, "the view was released or moved from");
+    if (!view_.owner) throw error(MPM_E_STATE, "the view was released or moved from");
+    const mpm_status status = mpm_view_release(&view_);
+    if (view_.owner) context_->check(status); // still lent
     const auto context = std::move(context_);
     const auto keep = std::move(keep_);
-    context->check(mpm_view_release(&view_));
+    context->check(status);
   }
   /** A component of an item. The indices are not checked. */
   T &operator()(int64_t item, int32_t component = 0) const noexcept {

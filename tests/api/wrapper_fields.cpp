@@ -177,6 +177,34 @@ void views(world &w) {
   CHECK(refused(MPM_E_NOT_FOUND, "body", [&] { w.stepper.map<const double>("mass", 1); }));
 }
 
+// What dies in a callback, where the library takes nothing back, is given back after the call.
+void given_up_in_callbacks() {
+  world w;
+  w.stepper.set_force([](const mpm_particle_batch &, double *) {});
+  CHECK(w.stepper.step(1e-5)); // memory for what callbacks are shown stays
+  const int64_t before = w.context.memory().bytes;
+  {
+    auto other = std::make_unique<mpm::particles>(w.grid, w.rubber);
+    other->fill_box({3.0, 3.0}, {4.0, 4.0}, {2, 2});
+    auto view = std::make_unique<mpm::view<double>>(other->map<double>("velocity"));
+    bool refuses = false;
+    w.stepper.set_force([&](const mpm_particle_batch &, double *) {
+      if (view) refuses = refused(MPM_E_STATE, "", [&] { view->release(); });
+      view.reset();
+    });
+    CHECK(w.stepper.step(1e-5) && refuses && !view);
+    other->remove({other->get<int64_t>("id")[0]}); // which a lent view would bar
+
+    view = std::make_unique<mpm::view<double>>(other->map<double>("velocity"));
+    auto small = std::make_unique<mpm::grid>(w.context, box(2));
+    w.stepper.set_force(
+        [&](const mpm_particle_batch &, double *) { small.reset(), other.reset(), view.reset(); });
+    CHECK(w.stepper.step(1e-5) && !other);
+  }
+  w.stepper.set_force(nullptr);
+  CHECK(w.context.memory().bytes == before);
+}
+
 std::string text_of(const std::string &path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
@@ -249,5 +277,6 @@ void test_fields(const std::string &scratch) {
   world w;
   copies(w);
   views(w);
+  given_up_in_callbacks();
   files(w, scratch);
 }
