@@ -1,4 +1,4 @@
-"""Builds the wheel with a C compiler and nothing from the network: the extension _view, and the shared library beside it.
+"""Builds the wheel with a C compiler and nothing from the network: the extensions in C, and the shared library beside them.
 
 The library is the one of the sources around this folder, made by `make` where it is not there yet; MPM_LIBRARY names
 another to be taken along, and MPM_BUNDLE=0 takes none: the package then loads the one that is installed.
@@ -29,16 +29,18 @@ def _tag():
     return f"cp311-abi3-{platform}"  # from 3.11 on buffers are part of the stable interface
 
 
-def compile_extension(folder):
-    """Compiles mpm/_view.c into a folder; returns the path."""
-    out = f"{folder}/_view.abi3.so"
+def compile_extensions(folder):
+    """Compiles what of the package is C into a folder; returns the paths."""
+    made = []
     compiler = shlex.split(os.environ.get("CC") or "cc")
     flags = [one for name, default in (("CFLAGS", "-O2"), ("CPPFLAGS", ""), ("LDFLAGS", ""))
              for one in shlex.split(os.environ.get(name, default))]
     link = ["-undefined", "dynamic_lookup"] if sys.platform == "darwin" else []
-    subprocess.run(compiler + flags + ["-fPIC", "-shared"] + link
-                   + ["-I" + sysconfig.get_path("include"), f"{HERE}/src/mpm/_view.c", "-o", out], check=True)
-    return out
+    for source in sorted(one for one in os.listdir(f"{HERE}/src/mpm") if one.endswith(".c")):
+        made.append(f"{folder}/{source[:-2]}.abi3.so")
+        subprocess.run(compiler + flags + ["-fPIC", "-shared"] + link
+                       + ["-I" + sysconfig.get_path("include"), f"{HERE}/src/mpm/{source}", "-o", made[-1]], check=True)
+    return made
 
 
 def _library():
@@ -82,8 +84,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         for one in sorted(os.listdir(f"{HERE}/src/mpm")):
             if one.endswith(".py"):
                 add_file(f"mpm/{one}", f"{HERE}/src/mpm/{one}")
-        extension = compile_extension(scratch)
-        add_file(f"mpm/{os.path.basename(extension)}", extension)
+        for extension in compile_extensions(scratch):
+            add_file(f"mpm/{os.path.basename(extension)}", extension)
         library = _library()
         if library:
             add_file("mpm/libmpm.so.0", library)
@@ -101,9 +103,9 @@ def build_sdist(sdist_directory, config_settings=None):
 
 
 def install(folder):
-    """Copies the package into a folder, with the extension and without the library: for packages of a distribution."""
+    """Copies the package into a folder, with the extensions and without the library: for packages of a distribution."""
     os.makedirs(f"{folder}/mpm", exist_ok=True)
     for one in sorted(os.listdir(f"{HERE}/src/mpm")):
         if one.endswith(".py"):
             shutil.copy(f"{HERE}/src/mpm/{one}", f"{folder}/mpm/{one}")
-    compile_extension(f"{folder}/mpm")
+    compile_extensions(f"{folder}/mpm")

@@ -1,5 +1,7 @@
 """Functions of Python that the library calls: what they see, what they give, what they raise."""
 import gc
+import signal
+import threading
 import unittest
 import weakref
 
@@ -122,6 +124,111 @@ class Callbacks(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             stepper.advance(10.0)
         self.assertEqual(stepper.info.step, 2)  # the third was not committed
+
+    def test_signals_arrive_wherever_they_come(self):
+        """The interpreter raises what a signal asks for at the entry of a callback, where no `try` of that has begun."""
+
+        def ring(*_):
+            raise Trouble("rung")
+
+        def force(batch, add):
+            add[:, 0] += batch.mass
+
+        old = signal.signal(signal.SIGALRM, ring)
+        try:
+            for after in range(12):
+                one, stepper = block()
+                stepper.set_force(force if after % 3 else None)
+                signal.setitimer(signal.ITIMER_REAL, 0.011 + 0.0013 * after)
+                with self.assertRaisesRegex(Trouble, "rung"):
+                    stepper.advance(1e3, dt_max=1e-5)
+                info = stepper.info
+                wanted = info.t * one["mass"].sum() if after % 3 else 0.0
+                np.testing.assert_allclose(info.momentum[0], wanted, rtol=1e-9, atol=1e-12)
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, old)
+
+    def test_each_thread_gets_its_own(self):
+        """A call that comes from another thread while a step is under way is refused, and says that."""
+        one, stepper = block()
+        told = []
+
+        def other():
+            try:
+                stepper.step(1e-3)
+            except Exception as raised:
+                told.append(raised)
+
+        def force(batch, add):
+            if not told:
+                with self.assertRaises(mpm.Error):
+                    stepper.info
+                thread = threading.Thread(target=other)
+                thread.start()
+                thread.join()
+            raise Trouble("mine")
+
+        stepper.set_force(force)
+        with self.assertRaisesRegex(Trouble, "mine"):
+            stepper.step(1e-3)
+        self.assertEqual(told[0].status, mpm.E_STATE)
+
+    def test_raised_arrays_are_an_error(self):
+        _, stepper = block()
+
+        def force(batch, add):
+            raise Trouble(batch.position)
+
+        stepper.set_force(force)
+        with self.assertRaisesRegex(RuntimeError, "kept an array.*raised Trouble") as caught:
+            stepper.step(1e-3)
+        self.assertIsNone(caught.exception.__context__)
+        with self.assertRaisesRegex(TypeError, "5 is no function"):
+            stepper.set_force(5)
+        with self.assertRaisesRegex(TypeError, "5 is no function"):
+            stepper.set_progress(5)
+
+    def test_vectors_on_lines(self):
+        """On a line vectors have an axis of one component, as those that are written have."""
+        one, stepper = block(dim=1)
+        shapes = set()
+
+        def force(batch, add):
+            shapes.add((batch.position.shape == add.shape, batch.velocity.ndim, batch.mass.ndim, batch.id.ndim))
+            add[...] += batch.mass[:, None]
+
+        def hook(batch, velocity, force):
+            shapes.add((batch.position.shape == velocity.shape, batch.index.ndim, batch.mass.ndim, batch.owned.ndim))
+
+        stepper.set_force(force)
+        stepper.set_node_hook(mpm.AFTER_FORCES, hook)
+        stepper.step(1e-3)
+        self.assertEqual(shapes, {(True, 2, 1, 1)})
+        np.testing.assert_allclose(stepper.info.momentum[0], 1e-3 * one["mass"].sum(), rtol=1e-9)
+
+    def test_what_is_removed_is_let_go(self):
+        one, stepper = block()
+        other = one.context.particles(one.grid, one.material)
+        stepper.add(other)
+        stepper.set_motion(other, lambda batch, add: None)
+        gone = weakref.ref(other)
+        stepper.remove(other)
+        del other
+        gc.collect()
+        self.assertIsNone(gone())
+
+    def test_views_that_die_in_callbacks(self):
+        one, stepper = block()
+        other = one.context.particles(one.grid, one.material).fill_box([0.1, 0.1], [0.2, 0.2])
+        views = [other.view("velocity", write=True)]
+        views[0][...] = 0.5
+        stepper.set_force(lambda batch, add: views.clear())
+        with self.assertRaisesRegex(mpm.Error, "E_STATE"):
+            other.remove(other.ids[:1])
+        stepper.step(1e-3)
+        other.remove(other.ids[:1])
+        self.assertTrue((other["velocity"] == 0.5).all())
 
     def test_progress_cancels(self):
         _, stepper = block()
@@ -334,6 +441,18 @@ class Compiled(unittest.TestCase):
         stepper.set_force(None)
         gc.collect()
         self.assertIsNone(gone())
+
+    def test_kinds_are_told_apart(self):
+        @compiled.node_hook
+        def lift(batch, velocity, force):
+            pass
+
+        _, stepper = block()
+        for wrong in (stepper.set_force, stepper.set_velocity_bc):
+            with self.assertRaisesRegex(TypeError, "node_hook"):
+                wrong(lift)
+        stepper.set_node_hook(mpm.AFTER_FORCES, lift)
+        stepper.step(1e-3)
 
     def test_exception_ends_the_step(self):
         @compiled.particles

@@ -132,6 +132,36 @@ class Views(unittest.TestCase):
         one.set("velocity", 0.0, ids=[5])
         stepper.step(1e-3)
 
+    def test_numbers_that_do_not_fit(self):
+        """Nothing is cut off, wraps around or is spread where that was not meant."""
+        one, stepper = block()
+        one.add_field("colour", dtype=np.int64)
+        one.set("colour", [1.0, 2.0], ids=[0, 1])
+        self.assertEqual(list(one.get("colour", [0, 1])), [1, 2])
+        for name, value in (("colour", 1.5), ("prescribed", 256), ("prescribed", -1)):
+            with self.assertRaisesRegex(ValueError, "not all held"):
+                one[name] = value
+            with self.assertRaisesRegex(ValueError, "not all held"):
+                one[name] = np.broadcast_to(value, one[name].shape)
+        with self.assertRaisesRegex(TypeError, "per_cell.*whole"):
+            one.fill_box(0.0, 0.1, per_cell=2.9)
+        with self.assertRaisesRegex(ValueError, r"\(3, 1\)"):
+            one.add(np.full((3, 1), 0.5), 1e-4)
+        with self.assertRaisesRegex(ValueError, r"\(3, 1\)"):
+            one.add(np.full((3, 2), 0.5), 1e-4, velocity=np.zeros((3, 1)))
+        context = one.context
+        for call in (lambda: context.grid(dim=2 + 2**32, cells=4, spacing=1), lambda: stepper.advance(1.0, max_steps=2**64),
+                     lambda: context.grid(dim=2, cells=(4, 2**64), spacing=1), lambda: mpm.Context(concurrency=2**32)):
+            with self.assertRaisesRegex(OverflowError, "dim|max_steps|cells|concurrency"):
+                call()
+        with self.assertRaisesRegex(Exception, "beyond an integer of 4 bytes"):
+            stepper.wall(2**32, mpm.WALL_SLIP)
+        with self.assertRaisesRegex(TypeError, "Stepper: flip = '1'"):
+            stepper.configure(flip="1")
+        with self.assertRaisesRegex(TypeError, "neo_hookean: E = '1e4' is no number"):
+            context.material("neo_hookean", E="1e4", nu=0.3, density=1e3)
+        self.assertEqual(len(one), 144)
+
     def test_masks_are_no_ids(self):
         one, stepper = block()
         mask = np.arange(len(one)) == 3

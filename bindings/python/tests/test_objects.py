@@ -6,6 +6,7 @@ import os
 import pickle
 import resource
 import tempfile
+import threading
 import unittest
 
 import mpm
@@ -59,7 +60,7 @@ class Lifetimes(unittest.TestCase):
             estate = things[0]._estate
             for index in order:
                 things[index] = None
-            self.assertEqual(estate.waiting, [])
+            self.assertEqual(len(estate.waiting), 0)
 
     def test_circles_are_collected(self):
         one, stepper = block()
@@ -68,7 +69,7 @@ class Lifetimes(unittest.TestCase):
         one.circle, stepper.circle = stepper, one
         del one, stepper
         gc.collect()
-        self.assertEqual(estate.waiting, [])
+        self.assertEqual(len(estate.waiting), 0)
 
     def test_close(self):
         one, stepper = block()
@@ -107,6 +108,58 @@ class Lifetimes(unittest.TestCase):
         gc.collect()
         self.assertLess(resident() - before, 3 << 20)
 
+    def test_with(self):
+        """An object ends with its block, or as soon as no other needs it."""
+        with mpm.Context() as context:
+            estate = context._estate
+            with block(context=context)[1] as stepper:
+                stepper.step(1e-3)
+                one = stepper.sets[0]
+            with self.assertRaisesRegex(Exception, "this Stepper is closed"):
+                stepper.step(1e-3)
+        self.assertGreater(len(estate.waiting), 0)
+        self.assertGreater(one["mass"].sum(), 0.0)
+        del one, stepper
+        gc.collect()
+        self.assertEqual(len(estate.waiting), 0)
+
+    def test_ends_on_many_threads(self):
+        """Each object is destroyed once, whatever thread does it."""
+        context = mpm.Context()
+        grid = context.grid(dim=2, cells=4, spacing=0.25)
+        law = context.material("neo_hookean", E=1e4, nu=0.3, density=1e3)
+        for _ in range(20):
+            things = [context.particles(grid, law) for _ in range(40)]
+            chunks = [things[at::4] for at in range(4)]
+            things.clear()
+            threads = [threading.Thread(target=chunk.clear) for chunk in chunks]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+        context.memory()
+        self.assertEqual(len(context._estate.waiting), 0)
+
+    def test_logs_that_raise(self):
+        """What a log raises comes out of the call that it is told of."""
+        armed = [True]
+
+        def log(level, text):
+            if armed:
+                raise LookupError(text)
+
+        with self.assertRaisesRegex(LookupError, "context"):
+            mpm.Context(log=log)
+        armed.clear()
+        context = mpm.Context(log=log)
+        grid = context.grid(dim=2, cells=8, spacing=0.125)
+        held = context.memory()[0]
+        context._raised[threading.get_ident()] = LookupError("said")  # as if it had been said while the next was made
+        with self.assertRaisesRegex(LookupError, "said"):
+            context.grid(dim=2, cells=8, spacing=0.125)
+        self.assertEqual(context.memory()[0], held)
+        self.assertEqual(grid.dim, 2)
+
     def test_log(self):
         told = []
         context = mpm.Context(log=lambda level, text: told.append((level, text)))
@@ -116,6 +169,17 @@ class Lifetimes(unittest.TestCase):
     def test_contexts_say_why(self):
         with self.assertRaisesRegex(mpm.Error, "E_ARG.*concurrency"):
             mpm.Context(concurrency=-3)
+
+
+class Few:
+    """A file that takes a few bytes at once, as raw files may."""
+
+    def __init__(self):
+        self.taken = []
+
+    def write(self, data):
+        self.taken.append(bytes(data[:997]))
+        return len(self.taken[-1])
 
 
 class Contact(unittest.TestCase):
@@ -346,7 +410,7 @@ class Surfaces(unittest.TestCase):
             for index in order:
                 things[index] = None
             gc.collect()
-            self.assertEqual(estate.waiting, [])
+            self.assertEqual(len(estate.waiting), 0)
 
 
 class States(unittest.TestCase):
@@ -399,6 +463,17 @@ class States(unittest.TestCase):
                 write(memory)
                 with open(f"{folder}/{name}", "rb") as file:
                     self.assertEqual(memory.getvalue(), file.read())
+                few = Few()
+                write(few)
+                self.assertEqual(b"".join(few.taken), memory.getvalue())
+            moved = stepper.hash
+            stepper.step(1e-3)
+            with open(f"{folder}/state", "rb") as file:
+                stepper.load(file)
+            self.assertEqual(stepper.hash, moved)
+            odd = os.fsencode(folder) + b"/\xff.state"  # a name that is no text
+            stepper.save(odd)
+            stepper.load(os.fsdecode(odd))
         with self.assertRaises(io.UnsupportedOperation):
             with open("/dev/null", "rb") as file:
                 stepper.save(file)

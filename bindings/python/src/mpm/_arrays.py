@@ -24,7 +24,7 @@ def doubles(values, *shape):
 
 def columns(values, components, n, dtype):
     """(n, components) numbers, or tensors (n, 3, 3), in the library's order [components][n]."""
-    array = np.asarray(values, dtype)
+    array = exactly(values, dtype)
     if array.ndim == 3:
         array = array.reshape(len(array), -1)
     if components == 1 and array.ndim == 1:
@@ -41,6 +41,15 @@ def rows(array, tensor=False):
     if tensor and len(array) == 9:
         return array.reshape(3, 3, -1).transpose(2, 0, 1)
     return array.T
+
+
+def exactly(values, dtype):
+    """An array of a type that holds the values: numpy would cut fractions off, and let whole numbers wrap around."""
+    array = np.asarray(values)
+    made = array.astype(dtype, copy=False)
+    if made.dtype.kind in "iu" and array.dtype != made.dtype and not np.array_equal(made, array):
+        raise ValueError(f"values of {array.dtype} are not all held by {made.dtype}")
+    return made
 
 
 def whole(values, what):
@@ -65,8 +74,20 @@ def address(array):
     return None if array is None else array.ctypes.data
 
 
-def lend(view, owner, ended):
-    """An array over a view that the library has just filled; the view ends with the last array that shows it."""
+def lend(view, owner):
+    """An array over a view that the library has just filled; the view ends with the last array that shows it. One that dies
+    while a call is under way, in a callback, is still lent: it is given back later."""
+
+    def give_back():
+        status = lib.mpm_view_release(ctypes.byref(view))
+        return status if view.owner else owner._given_back(status)
+
+    def ended(status):
+        if view.owner:
+            owner._context._estate.leave(give_back)
+        else:
+            owner._given_back(status)
+
     dtype = TYPES[view.type]
     columns_there = view.components if view.components > 1 else 0
     lease = _view.Lease(view.data or 0, _FORMATS[view.type], dtype.itemsize, view.count, columns_there, view.item_stride,
@@ -103,7 +124,7 @@ class Batch:
                 array = self._raw(at, 9, writable=writable).reshape(3, 3, -1)[:, :, :self._struct.n].transpose(2, 0, 1)
             else:
                 kind = np.int64 if name in self._integers else np.uint8 if name in self._bytes else np.float64
-                array = self._show(at, components(self._struct), kind, writable)
+                array = self._show(at, components(self._struct), kind, writable, components is not scalar)
         self.__dict__[name] = array
         return array
 
@@ -117,10 +138,10 @@ class Batch:
         self._leases.append(lease)
         return np.asarray(memoryview(lease))
 
-    def _show(self, at, components, dtype=np.float64, writable=False):
-        """The same as (n, components), or (n,) for one."""
+    def _show(self, at, components, dtype=np.float64, writable=False, wide=True):
+        """The same as (n, components), or (n,) for one that is not wide."""
         array = self._raw(at, components, dtype, writable)[:, :self._struct.n]
-        return array[0] if components == 1 else array.T
+        return array.T if wide else array[0]
 
     def field(self, name):
         """A field of the set, built in or the host's own, aligned with the batch and with its stored components."""
@@ -140,23 +161,28 @@ class Batch:
     def _run(self, fn, *outputs):
         """Calls fn with the batch and with arrays of its outputs, (address, dtype, shape): (n, ...) over [...][ld]. Then the
         loan ends: an array that lives on would show memory that is gone, which is an error of fn. What fn raises has no
-        variables in its frames, because they may be such arrays."""
+        variables in its frames, because they may be such arrays; if it keeps one all the same, that error takes its place."""
         arrays = []
         for at, dtype, *shape in outputs:
             array = self._raw(at, int(np.prod(shape)), dtype, True).reshape(*shape, -1)[..., :self._struct.n]
             arrays.append(np.moveaxis(array, -1, 0))
-        array = None
+        array = said = raised = None
         try:
             said = fn(self, *arrays)
-        except BaseException as raised:
-            traceback.clear_frames(raised.__traceback__)
-            raise
-        finally:
-            arrays.clear()
-            leases = self._leases
-            self.__dict__ = {"_struct": None, "_leases": []}
+        except BaseException as one:
+            traceback.clear_frames(one.__traceback__)
+            raised = one
+        arrays.clear()
+        leases = self._leases
+        self.__dict__ = {"_struct": None, "_leases": []}
         if any(lease.exports for lease in leases):
-            raise RuntimeError("a callback has kept an array of its batch, whose memory ends with the call; keep a copy()")
+            raise RuntimeError("a callback has kept an array of its batch, whose memory ends with the call; keep a copy()" +
+                               (f"; it raised {type(raised).__name__}" if raised is not None else ""))
+        if raised is not None:
+            try:
+                raise raised
+            finally:
+                raised = None  # which has this frame
         return said
 
 

@@ -1,31 +1,44 @@
 """Contexts, and what all handles share: who owns whom, and the end of both."""
+import collections
 import ctypes
+import threading
 import warnings
 import weakref
 
 from . import _api
+from ._guard import Guard
 from ._library import Error, documented, error_of, lib
 
 
 class _Estate:
-    """The handles of one context that are still to be destroyed. The garbage collector may end objects in any order; one
-    that others still need is refused by the library, and tried again when they are gone."""
+    """The handles and views of one context that are still to be given up. The garbage collector may end objects in any order,
+    on any thread and in callbacks; one that others still need, or that comes while a call is under way, is refused by the
+    library, and tried again later. Each is taken out before it is tried, so that two threads never try the same."""
 
     def __init__(self):
-        self.waiting = []
+        self.waiting = collections.deque()
 
-    def leave(self, destroy, address):
-        self.waiting.append((destroy, address))
+    def leave(self, give_up, *what):
+        """Calls give_up(*what), now or later, until it returns 0."""
+        self.waiting.append((give_up, what))
         self.settle()
 
     def settle(self):
         some = True
-        while some and self.waiting:
-            some = False
-            for item in list(self.waiting):
-                if item in self.waiting and item[0](item[1]) == 0:
-                    self.waiting.remove(item)
-                    some = True
+        while some:
+            some, refused = False, []
+            try:
+                while self.waiting:
+                    try:
+                        item = self.waiting.popleft()
+                    except IndexError:  # another thread has taken the last
+                        break
+                    if item[0](*item[1]) == 0:
+                        some = True
+                    else:
+                        refused.append(item)
+            finally:
+                self.waiting.extend(refused)
 
 
 class Handle:
@@ -50,7 +63,8 @@ class Handle:
         return self._address
 
     def close(self):
-        """Ends the object now. It is an Error (E_STATE) while others need it; then nothing has happened."""
+        """Ends the object now. It is an Error (E_STATE) while others need it; then nothing has happened. At the end of a
+        `with` it ends as soon as no other needs it."""
         if not self._end.alive:
             return
         self._context._check(type(self)._destroy(self._address))
@@ -60,12 +74,24 @@ class Handle:
         if status:
             text = lib.mpm_last_error(self._context._address).decode()
             warnings.warn(f"MPM_{_api.Status(status).name}: {text}", RuntimeWarning, stacklevel=2)
+        return 0
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        self.close()
+        self._end()
+
+
+def _put(write, read, where, value, what):
+    """Writes a field, and sees that it is there: whole numbers of C wrap around without a word."""
+    try:
+        write(where, value)
+    except TypeError as reason:
+        raise TypeError(f"{what} = {value!r}: {reason}") from None
+    there = read(where)
+    if isinstance(there, int) and there != value:
+        raise OverflowError(f"{what} = {value!r} is beyond what its type in C holds")
 
 
 def fill(struct, options, what):
@@ -80,9 +106,9 @@ def fill(struct, options, what):
             if len(values) > len(there):
                 raise TypeError(f"{what}: '{name}' has {len(values)} values where there are {len(there)}")
             for index, one in enumerate(values):
-                there[index] = one
+                _put(there.__setitem__, there.__getitem__, index, one, f"{what}: {name}[{index}]")
         else:
-            setattr(struct, name, value)
+            _put(struct.__setattr__, struct.__getattribute__, name, value, f"{what}: {name}")
     return struct
 
 
@@ -104,58 +130,53 @@ class Context(Handle):
 
     def __init__(self, concurrency=1, isa=_api.ISA_BEST, serial_callbacks=True, log=None):
         self._estate = _Estate()
-        self._raised = None
+        self._raised = {}  # what callbacks have raised, by the thread on which they ran
         said = ctypes.create_string_buffer(1024)
         desc = descriptor(_api.context_desc, lib.mpm_context_desc_init,
                           dict(concurrency=concurrency, isa=isa, serial_callbacks=bool(serial_callbacks)), "Context")
         desc.error_text, desc.error_bytes = ctypes.addressof(said), len(said)
-        self._log = log and _api.context_desc_log_fn(lambda user, level, text: self._tell(log, level, text))
-        if self._log:
-            desc.log = self._log
+        if log is not None:
+            def tell(_, level, text):
+                log(_api.Log(level), text.decode())
+
+            self._log = desc.log = _api.context_desc_log_fn(Guard(tell, self._raised))
         out = ctypes.c_void_p()
         status = lib.mpm_context_create(ctypes.byref(desc), ctypes.byref(out))
         if status:
             raise error_of(status, said.value.decode())
         self._context, self._address = self, out
         self._end = weakref.finalize(self, self._estate.leave, lib.mpm_context_destroy, out.value)
+        self._check(0)  # the log may have raised
 
-    def _tell(self, log, level, text):
-        try:
-            log(_api.Log(level), text.decode())
-        except BaseException as raised:  # it comes out of the call that is under way, when that ends
-            self._raised = self._raised or raised
+    def _taken(self, status):
+        """What a callback of this thread's call has raised, if one has. Callbacks may have run on threads of the library."""
+        raised = self._raised.pop(threading.get_ident(), None)
+        if raised is None and status == _api.E_CALLBACK and self._raised:
+            raised = self._raised.popitem()[1]
+        return raised
 
     def _check(self, status):
         """Raises what a callback has raised, or the library's error; returns a status 0."""
-        raised, self._raised = self._raised, None
-        if raised is not None:
-            raise raised
-        if status:
-            raise error_of(status, lib.mpm_last_error(self._address).decode())
+        raised = self._taken(status) if self._raised else None
+        if raised is None and status:
+            raised = error_of(status, lib.mpm_last_error(self._address).decode())
         if self._estate.waiting:
             self._estate.settle()
+        if raised is not None:
+            raise raised
         return status
 
-    def _guard(self, callback):
-        """A function for the library that calls one of Python's: exceptions wait until the library's call has ended."""
-
-        def call(*arguments):
-            try:
-                said = callback(*arguments)
-                return 0 if said is None else int(said)
-            except BaseException as raised:  # also KeyboardInterrupt
-                self._raised = self._raised or raised
-                return -1
-
-        return call
-
-    def _callback(self, kind, fn, call):
-        """A function of one of the library's types: of None none, fn itself where it is compiled (mpm.numba), else call,
-        which runs fn."""
+    def _callback(self, kind, fn, call, compiler=None):
+        """A function of one of the library's types: of None none, fn itself where it is compiled (by that function of
+        mpm.numba, or by another tool), else call, which runs fn."""
         if fn is None:
             return kind()
         if not hasattr(fn, "address"):
-            return kind(self._guard(call))
+            if not callable(fn):
+                raise TypeError(f"{fn!r} is no function")
+            return kind(Guard(call, self._raised))
+        if getattr(fn, "serves", compiler) != compiler:
+            raise TypeError(f"a function that mpm.numba.{fn.serves} has compiled is for another callback")
         made = ctypes.cast(fn.address, kind)
         made.compiled = fn  # whose code must not go before
         return made
@@ -164,14 +185,23 @@ class Context(Handle):
         """A function for the library that hands bytes to file.write()."""
 
         def take(_, data, count):
-            file.write(ctypes.string_at(data, count))
+            left = memoryview(ctypes.string_at(data, count))
+            while left:  # a raw file may write a part, and says how much
+                said = file.write(left)
+                left = left[len(left) if said is None else said:]
 
-        return _api.write_fn(self._guard(take))
+        return _api.write_fn(Guard(take, self._raised))
 
-    def _make(self, function, *arguments):
-        """Calls a function whose last argument is the address of a new object."""
+    def _make(self, destroy, function, *arguments):
+        """Calls a function whose last argument is the address of a new object, which destroy() ends."""
         out = ctypes.c_void_p()
-        self._check(function(*arguments, ctypes.byref(out)))
+        status = function(*arguments, ctypes.byref(out))
+        try:
+            self._check(status)
+        except BaseException:
+            if out.value:  # the log has raised
+                self._estate.leave(destroy, out.value)
+            raise
         return out.value
 
     @documented("mpm_context_memory")

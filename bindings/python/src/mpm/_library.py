@@ -34,6 +34,21 @@ def _load():
                       + "; ".join(tried))
 
 
+def _bounded(kind):
+    """An integer of C as an argument: ctypes would let numbers beyond it wrap around."""
+
+    def from_param(cls, value):
+        made = kind(value)
+        if made.value != value:
+            raise OverflowError(f"{value} is beyond an integer of {ctypes.sizeof(kind)} bytes")
+        return made
+
+    return type("Bounded", (kind,), {"from_param": classmethod(from_param)})
+
+
+_INTEGERS = {kind: _bounded(kind) for kind in (ctypes.c_int32, ctypes.c_uint32, ctypes.c_int64, ctypes.c_uint64)}
+
+
 #: The library as ctypes sees it, with the prototypes of all functions that this version has.
 lib = _load()
 for _name, (_result, _arguments) in _api.FUNCTIONS.items():
@@ -41,7 +56,7 @@ for _name, (_result, _arguments) in _api.FUNCTIONS.items():
         _function = getattr(lib, _name)
     except AttributeError:
         continue
-    _function.restype, _function.argtypes = _result, _arguments
+    _function.restype, _function.argtypes = _result, [_INTEGERS.get(kind, kind) for kind in _arguments]
     _function.__doc__ = _api.DOCS[_name]
 
 

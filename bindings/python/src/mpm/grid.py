@@ -14,7 +14,7 @@ class Grid(Handle):
 
     def __init__(self, context, **options):
         desc = descriptor(_api.grid_desc, lib.mpm_grid_desc_init, options, "Grid")
-        self._own(context, context._make(lib.mpm_grid_create, context, ctypes.byref(desc)), context)
+        self._own(context, context._make(self._destroy, lib.mpm_grid_create, context, ctypes.byref(desc)), context)
         self.dim = desc.dim
         self.basis = _api.Basis(desc.basis)
         self.cells = tuple(desc.cells)[:desc.dim]

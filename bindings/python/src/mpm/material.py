@@ -47,8 +47,11 @@ class Material(Handle):
     _destroy = staticmethod(lib.mpm_material_destroy)
 
     def __init__(self, context, model, **parameters):
-        named = (_api.param * len(parameters))(*((name.encode(), value) for name, value in parameters.items()))
-        self._own(context, context._make(lib.mpm_material_create, context, model.encode(), named, len(named)), context)
+        for name, value in parameters.items():
+            if isinstance(value, str) or not hasattr(value, "__float__"):
+                raise TypeError(f"{model}: {name} = {value!r} is no number")
+        named = (_api.param * len(parameters))(*((name.encode(), float(value)) for name, value in parameters.items()))
+        self._own(context, context._make(self._destroy, lib.mpm_material_create, context, model.encode(), named, len(named)), context)
         self.model, self.parameters = model, dict(parameters)
         self.state_count = lib.mpm_material_state_count(model.encode())
         self._sets = weakref.WeakSet()
@@ -104,8 +107,7 @@ class MaterialBatch(Batch):
     def _states(self, name, writable):
         if not self._struct.state_count:
             raise LookupError("the law has no state variables")
-        array = self._show(getattr(self._struct, name), self._struct.state_count, writable=writable)
-        return array[:, None] if array.ndim == 1 else array
+        return self._show(getattr(self._struct, name), self._struct.state_count, writable=writable)
 
     @property
     def position(self):
@@ -113,7 +115,7 @@ class MaterialBatch(Batch):
         dims = {kinds["position"][1] for kinds in self._kinds()} or {3}
         if len(dims) != 1:
             raise LookupError("sets of this law have different dimensions")
-        return np.atleast_2d(self._show(self._struct.position, dims.pop())) if self._struct.position else None
+        return self._show(self._struct.position, dims.pop()) if self._struct.position else None
 
 
 class Law(Material):
@@ -144,11 +146,11 @@ class Law(Material):
             answer = MaterialBatch(batch, kinds())._run(tangent, (c, np.float64, *shape))
             ctypes.c_int32.from_address(symmetric).value = bool(answer)
 
-        self._callbacks = (context._callback(_api.stress_fn, stress, find_stress),
+        self._callbacks = (context._callback(_api.stress_fn, stress, find_stress, "stress"),
                            context._callback(_api.tangent_fn, tangent, find_tangent))
         desc.stress, desc.tangent = self._callbacks
         desc.state_initial = address(initial)
-        made = context._make(lib.mpm_material_create_custom, context, ctypes.byref(desc))
+        made = context._make(self._destroy, lib.mpm_material_create_custom, context, ctypes.byref(desc))
         self._own(context, made, context)
         self.model, self.parameters, self.state_count = None, {"density": density}, state_count
 

@@ -155,6 +155,7 @@ def particles(fn):
         except Exception:
             return -1
 
+    call.serves = "particles"
     return call
 
 
@@ -172,6 +173,7 @@ def velocity_bc(fn):
         except Exception:
             return -1
 
+    call.serves = "velocity_bc"
     return call
 
 
@@ -188,6 +190,7 @@ def node_hook(fn):
         except Exception:
             return -1
 
+    call.serves = "node_hook"
     return call
 
 
@@ -202,4 +205,5 @@ def stress(fn):
         except Exception:
             return -1
 
+    call.serves = "stress"
     return call

@@ -44,7 +44,7 @@ class Obstacle(Handle):
 
         self._motion = None
         self._distance = desc.distance = context._callback(_api.distance_fn, distance, measure)
-        self._own(context, context._make(lib.mpm_obstacle_create, context, ctypes.byref(desc)), context)
+        self._own(context, context._make(self._destroy, lib.mpm_obstacle_create, context, ctypes.byref(desc)), context)
 
     @documented("mpm_obstacle_set_motion")
     def set_motion(self, motion):

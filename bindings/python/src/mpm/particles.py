@@ -1,10 +1,12 @@
 """Sets of particles: filled, changed, read by id, or seen where they lie."""
 import ctypes
+import os
 
 import numpy as np
 
 from . import _api
-from ._arrays import TYPES, address, chosen, columns, doubles, lend, rows, whole
+from ._arrays import TYPES, address, chosen, columns, doubles, exactly, lend, rows, whole
+from ._guard import Guard
 from ._handles import Handle
 from ._library import documented, lib
 
@@ -24,7 +26,7 @@ class Particles(Handle):
     _destroy = staticmethod(lib.mpm_particles_destroy)
 
     def __init__(self, context, grid, material):
-        self._own(context, context._make(lib.mpm_particles_create, context, grid, material), context, grid, material)
+        self._own(context, context._make(self._destroy, lib.mpm_particles_create, context, grid, material), context, grid, material)
         self.grid, self.material, self.dim = grid, material, grid.dim
         self._look()
         material._sets.add(self)
@@ -65,10 +67,19 @@ class Particles(Handle):
     def add(self, position, volume, velocity=None, size=None, ids=None):
         """Adds particles at position (n, dim), with volume (n,) or one for all. Returns the range of ids, where the library
         gives them."""
-        position = np.atleast_2d(np.asarray(position, np.float64))
+        position = np.asarray(position, np.float64)
+        if position.ndim < 2:
+            position = position.reshape(-1, 1) if self.dim == 1 else position.reshape(1, -1)
         n = len(position)
-        shape = lambda values: None if values is None else columns(np.broadcast_to(values, (n, self.dim)), self.dim, n, np.float64)
-        position, velocity, size = shape(position), shape(velocity), shape(size)
+
+        def each(values):
+            """Vectors of all particles: one, or a number for all components, stands for all."""
+            if values is None:
+                return None
+            values = np.asarray(values, np.float64)
+            return columns(np.broadcast_to(values, (n, self.dim)) if values.ndim < 2 else values, self.dim, n, np.float64)
+
+        position, velocity, size = columns(position, self.dim, n, np.float64), each(velocity), each(size)
         volume = np.ascontiguousarray(np.broadcast_to(np.asarray(volume, np.float64), (n,)))
         ids = None if ids is None else whole(ids, "ids")
         if ids is not None and ids.shape != (n,):
@@ -84,7 +95,7 @@ class Particles(Handle):
         return self
 
     def _per_cell(self, per_cell):
-        return np.ascontiguousarray(np.broadcast_to(np.asarray(per_cell, np.int32), (self.dim,)))
+        return np.ascontiguousarray(np.broadcast_to(exactly(whole(per_cell, "per_cell"), np.int32), (self.dim,)))
 
     @documented("mpm_particles_fill_box")
     def fill_box(self, lower, upper, per_cell=2):
@@ -123,7 +134,7 @@ class Particles(Handle):
                 raise ValueError(f"inside() gave {told.shape} answers for {n} points")
             ctypes.memmove(answer, address(told), n)  # told is held until here
 
-        callback = _api.inside_fn(self._context._guard(ask))
+        callback = _api.inside_fn(Guard(ask, self._context._raised))
         return self._fill(lib.mpm_particles_fill, address(lower), address(upper), address(per_cell), callback, None)
 
     @documented("mpm_particles_remove")
@@ -171,8 +182,9 @@ class Particles(Handle):
         return rows(out, tensor=field in _TENSORS)
 
     @documented("mpm_particles_get_f32")
-    def get_f32(self, *fields, order=_api.LIBRARY_ORDER):
-        """Packs fields into floats, (n, components of all), without inert slots: what renderers want."""
+    def get_f32(self, *fields, order=_api.BY_ID):
+        """Packs fields into floats, (n, components of all), without inert slots: what renderers want. LIBRARY_ORDER is faster
+        than by ascending id."""
         width = sum(self._field(name)[1] for name in fields)
         out = np.empty((len(self), width), np.float32)
         names = (ctypes.c_char_p * max(len(fields), 1))(*(name.encode() for name in fields))
@@ -187,7 +199,8 @@ class Particles(Handle):
         ids, n = chosen(ids, len(self))
         alone = values.ndim == 0 or (values.ndim == 1 and components > 1) or (values.ndim == 2 and field in _TENSORS)
         if alone:
-            value = np.ascontiguousarray(np.broadcast_to(values.ravel() if values.ndim == 2 else values, (components,)), dtype)
+            value = np.broadcast_to(values.ravel() if values.ndim == 2 else values, (components,))
+            value = np.ascontiguousarray(exactly(value, dtype))
             if ids is None:
                 self._context._check(lib.mpm_particles_set_all(self, field.encode(), kind, components, address(value)))
                 return
@@ -223,7 +236,7 @@ class Particles(Handle):
         view = _api.view(struct_size=ctypes.sizeof(_api.view))
         access = _api.READ | (_api.WRITE if write else 0)
         self._context._check(lib.mpm_particles_map(self, field.encode(), access, ctypes.byref(view)))
-        return lend(view, self, self._given_back)
+        return lend(view, self)
 
     @documented("mpm_particles_set_geostatic")
     def set_geostatic(self, axis, gravity, surface, K0, surcharge=0.0):
@@ -244,4 +257,4 @@ class Particles(Handle):
         if hasattr(path, "write"):
             self._context._check(lib.mpm_write_particles_to(self, self._context._sink(path), None, *where))
         else:
-            self._context._check(lib.mpm_write_particles(self, str(path).encode(), *where))
+            self._context._check(lib.mpm_write_particles(self, os.fsencode(path), *where))

@@ -1,10 +1,12 @@
 """The time loop: steps, walls, forces and other callbacks, contact, saved states."""
 import ctypes
+import os
 
 import numpy as np
 
 from . import _api
 from ._arrays import address, lend
+from ._guard import Guard
 from ._handles import Handle, descriptor, fill
 from ._library import documented, lib
 from .batches import AdaptionBatch, ContactBatch, NodeBatch, ParticleBatch
@@ -42,7 +44,7 @@ class Stepper(Handle):
 
     def __init__(self, context, grid, *sets, **options):
         self._options = descriptor(_api.stepper_desc, lib.mpm_stepper_desc_init, options, "Stepper")
-        made = context._make(lib.mpm_stepper_create, context, grid, ctypes.byref(self._options))
+        made = context._make(self._destroy, lib.mpm_stepper_create, context, grid, ctypes.byref(self._options))
         self._callbacks, self._held, self._adapting, self._heated = {}, {}, {}, {}
         self._own(context, made, context, grid)
         self.grid, self.dim, self._sets, self._obstacles = grid, grid.dim, [], []
@@ -88,6 +90,8 @@ class Stepper(Handle):
         _, remove, there = self._place(thing)
         self._context._check(remove(self, thing))
         there.remove(thing)
+        for kept in (self._held, self._adapting, self._heated):
+            kept.pop(id(thing), None)
 
     @documented("mpm_stepper_configure")
     def configure(self, **options):
@@ -222,7 +226,7 @@ class Stepper(Handle):
         def call(_, batch, add):
             return self._shown(batch)._run(fn, (add, np.float64, self.dim))
 
-        return self._context._callback(_api.particle_fn, fn, call)
+        return self._context._callback(_api.particle_fn, fn, call, "particles")
 
     def _set(self, key, setter, made, *before):
         """Sets a callback, and keeps it alive as long as the library may call it."""
@@ -255,7 +259,7 @@ class Stepper(Handle):
         def call(_, batch, prescribed, velocity):
             return NodeBatch(batch)._run(fn, (prescribed, np.uint8, self.dim), (velocity, np.float64, self.dim))
 
-        self._set("velocity_bc", lib.mpm_stepper_set_velocity_bc, self._context._callback(_api.velocity_fn, fn, call))
+        self._set("velocity_bc", lib.mpm_stepper_set_velocity_bc, self._context._callback(_api.velocity_fn, fn, call, "velocity_bc"))
 
     @documented("mpm_stepper_set_node_hook")
     def set_node_hook(self, stage, fn):
@@ -265,7 +269,8 @@ class Stepper(Handle):
         def call(_, batch, velocity, force):
             return NodeBatch(batch)._run(fn, (velocity, np.float64, self.dim), (force, np.float64, self.dim))
 
-        self._set(("hook", int(stage)), lib.mpm_stepper_set_node_hook, self._context._callback(_api.node_fn, fn, call), stage)
+        made = self._context._callback(_api.node_fn, fn, call, "node_hook")
+        self._set(("hook", int(stage)), lib.mpm_stepper_set_node_hook, made, stage)
 
     @documented("mpm_stepper_set_friction")
     def set_friction(self, fn):
@@ -300,12 +305,12 @@ class Stepper(Handle):
         Ctrl-C ends a long call with the state of the last committed step."""
 
         def call(_, info):
-            if fn is not None:
-                struct = _api.step_info.from_buffer_copy(info.contents)
-                return 1 if fn(StepInfo(struct)) else 0
-            return 0
+            return 1 if fn(StepInfo(_api.step_info.from_buffer_copy(info.contents))) else 0
 
-        self._set("progress", lib.mpm_stepper_set_progress, _api.progress_fn(self._context._guard(call)))
+        if fn is not None and not callable(fn):
+            raise TypeError(f"{fn!r} is no function")
+        watch = Guard(None if fn is None else call, self._context._raised)
+        self._set("progress", lib.mpm_stepper_set_progress, _api.progress_fn(watch))
 
     # ---- steps ----
 
@@ -386,7 +391,7 @@ class Stepper(Handle):
         view = _api.view(struct_size=ctypes.sizeof(_api.view))
         access = _api.READ | (_api.WRITE if write else 0)
         self._context._check(lib.mpm_grid_map(self, body, field.encode(), access, ctypes.byref(view)))
-        return lend(view, self, self._given_back)
+        return lend(view, self)
 
     # ---- reports ----
 
@@ -451,7 +456,7 @@ class Stepper(Handle):
             self._context._check(lib.mpm_state_save_to(self, self._context._sink(path), None))
             return None
         if path is not None:
-            self._context._check(lib.mpm_state_save_file(self, str(path).encode()))
+            self._context._check(lib.mpm_state_save_file(self, os.fsencode(path)))
             return None
         count = ctypes.c_int64()
         self._context._check(lib.mpm_state_size(self, ctypes.addressof(count)))
@@ -461,12 +466,15 @@ class Stepper(Handle):
 
     @documented("mpm_state_load")
     def load(self, state):
-        """Replaces the state by one from a file, by its path, or by one that save() has returned as bytes."""
+        """Replaces the state by one from a file, by its path or open for binary reading, or by one that save() has returned as
+        bytes."""
+        if hasattr(state, "read"):
+            state = state.read()
         if isinstance(state, (bytes, bytearray, memoryview)):
             state = bytes(state)
             self._context._check(lib.mpm_state_load(self, state, len(state)))
         else:
-            self._context._check(lib.mpm_state_load_file(self, str(state).encode()))
+            self._context._check(lib.mpm_state_load_file(self, os.fsencode(state)))
         for one in self._sets:
             one._look()
 
@@ -497,4 +505,4 @@ class Stepper(Handle):
         if hasattr(path, "write"):
             self._context._check(lib.mpm_write_grid_to(self, body, self._context._sink(path), None, *where))
         else:
-            self._context._check(lib.mpm_write_body_grid(self, body, str(path).encode(), *where))
+            self._context._check(lib.mpm_write_body_grid(self, body, os.fsencode(path), *where))

@@ -38,7 +38,7 @@ class Surface(Handle):
     def __init__(self, context, grid, **options):
         self.grid, self.dim, self._traction, self._velocity = grid, grid.dim, None, None
         self._options = descriptor(_api.surface_desc, lib.mpm_surface_desc_init, self._along(options), "Surface")
-        self._own(context, context._make(lib.mpm_surface_create, context, grid, ctypes.byref(self._options)), context, grid)
+        self._own(context, context._make(self._destroy, lib.mpm_surface_create, context, grid, ctypes.byref(self._options)), context, grid)
 
     def _along(self, options):
         """The options with vectors that have as many components as the grid has dimensions."""
