@@ -34,6 +34,18 @@ contains
     law%calls = -1
   end subroutine release
 
+  !> Power that grows with the id.
+  function heat_up(user, batch, power) bind(c) result(answer)
+    type(c_ptr), value :: user
+    type(mpm_particle_batch), intent(in) :: batch
+    real(c_double), intent(inout) :: power(*)
+    integer(c_int32_t) :: answer
+    integer(c_int64_t), pointer :: id(:)
+    call c_f_pointer(batch%id, id, [batch%n])
+    power(:batch%n) = 2 * id
+    answer = merge(MPM_E_ARG, MPM_OK, c_associated(user))
+  end function heat_up
+
   !> Refuses every step.
   function refuse(user, batch, add) bind(c) result(answer)
     type(c_ptr), value :: user
@@ -57,10 +69,12 @@ program host
   type(mpm_advance_desc) :: run
   type(mpm_step_info) :: info
   type(mpm_view) :: view
+  type(mpm_heat_desc) :: warm
   type(spring), target :: law
   type(mpm_parameters), target :: wrong
-  type(mpm_names), target :: fields
-  real(c_double) :: low, high, start
+  type(mpm_names), target :: fields, packed
+  real(c_float) :: floats(2, 20)
+  real(c_double) :: low, high, start, warmth(20)
   real(c_double), allocatable :: x(:, :)
   real(c_double), pointer :: v(:)
   integer(c_int64_t) :: first, count
@@ -109,9 +123,12 @@ program host
   call ensure("the velocity that was written", all(abs(x - 0.1d0) <= 0))
   deallocate (x)
   allocate (x(2, 1))
+  packed = mpm_names([character(9) :: "position", "velocity"])
   call is("some", mpm_particles_get(set, "position" // c_null_char, MPM_F64, 1, 2_c_int64_t, ids, x), MPM_OK)
   call ensure("by id", abs(x(1, 1) - x(2, 1) - 0.2d0) < 1d-12)
   start = x(1, 1)
+  call is("floats", mpm_particles_get_f32(set, 2, packed%pointers(), MPM_BY_ID, 20_c_int64_t, floats), MPM_OK)
+  call ensure("as floats", all(abs(floats(:, ids + 1) - reshape([real(x(1, 1)), 0.1, real(x(2, 1)), 0.1], [2, 2])) < 1e-6))
 
   call mpm_init(options)
   call is("stepper", mpm_stepper_create(context, grid, options, stepper), MPM_OK)
@@ -123,6 +140,16 @@ program host
   call ensure("the time", abs(info%t - 0.5d0) < 1d-12 .and. law%calls > 0)
   call is("get", mpm_particles_get(set, "position" // c_null_char, MPM_F64, 1, 2_c_int64_t, ids, x), MPM_OK)
   call ensure("the way", abs(x(1, 1) - start - 0.05d0) < 1d-9)
+
+  call mpm_init(warm)
+  warm%specific_heat = 2
+  warm%source = c_funloc(heat_up)
+  call is("heat", mpm_stepper_set_heat(stepper, set, warm), MPM_OK)
+  call is("a warm step", mpm_step(stepper, 1d-3, info), MPM_OK)
+  call is("temperature", mpm_particles_get(set, "temperature" // c_null_char, MPM_F64, 1, 20_c_int64_t, out=warmth), &
+      MPM_OK)
+  call ensure("what the source gave", abs(sum(warmth) - 0.190d0) < 1d-12 .and. warmth(20) > warmth(1))
+  call is("no heat", mpm_stepper_set_heat(stepper, set), MPM_OK)
 
   call is("refusing", mpm_stepper_set_force(stepper, c_funloc(refuse), c_null_ptr), MPM_OK)
   call is("refused", mpm_step(stepper, 1d-3, info), MPM_E_CALLBACK)

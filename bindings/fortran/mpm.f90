@@ -1194,7 +1194,7 @@ module mpm
       type(c_ptr), value :: user
       integer(c_int32_t), value :: op
       integer(c_int64_t), value :: count
-      integer(c_int64_t), intent(inout) :: values
+      integer(c_int64_t), intent(inout) :: values(*)
       integer(c_int32_t) :: answer
     end function mpm_reduce_fn
 
@@ -1203,7 +1203,7 @@ module mpm
       import
       type(c_ptr), value :: user
       integer(c_int64_t), value :: value
-      integer(c_int64_t), intent(inout) :: all
+      integer(c_int64_t), intent(inout) :: all(*)
       integer(c_int32_t) :: answer
     end function mpm_gather_fn
 
@@ -1399,7 +1399,7 @@ module mpm
       import
       type(c_ptr), value :: user
       type(mpm_adaption_batch), intent(in) :: batch
-      integer(c_int8_t), intent(inout) :: accept
+      integer(c_int8_t), intent(inout) :: accept(*)
       integer(c_int32_t) :: answer
     end function mpm_adaption_fn
 
@@ -1409,7 +1409,7 @@ module mpm
       import
       type(c_ptr), value :: user
       type(mpm_particle_batch), intent(in) :: batch
-      real(c_double), intent(inout) :: power
+      real(c_double), intent(inout) :: power(*)
       integer(c_int32_t) :: answer
     end function mpm_heat_fn
 
@@ -1457,8 +1457,8 @@ module mpm
     function mpm_context_part(context, part, parts) bind(c, name="mpm_context_part") result(answer)
       import
       type(c_ptr), value :: context
-      integer(c_int32_t), intent(inout) :: part
-      integer(c_int32_t), intent(inout) :: parts
+      integer(c_int32_t), intent(inout), optional :: part
+      integer(c_int32_t), intent(inout), optional :: parts
       integer(c_int32_t) :: answer
     end function mpm_context_part
 
@@ -1482,7 +1482,7 @@ module mpm
     function mpm_stepper_set_balance(stepper, desc) bind(c, name="mpm_stepper_set_balance") result(answer)
       import
       type(c_ptr), value :: stepper
-      type(mpm_balance_desc), intent(in) :: desc
+      type(mpm_balance_desc), intent(in), optional :: desc
       integer(c_int32_t) :: answer
     end function mpm_stepper_set_balance
 
@@ -1509,7 +1509,7 @@ module mpm
       import
       type(c_ptr), value :: particles
       integer(c_int64_t), value :: n
-      integer(c_int64_t), intent(in) :: ids(*)
+      integer(c_int64_t), intent(in), optional :: ids(*)
       type(*), intent(inout) :: buffer(*)
       integer(c_int64_t), value :: capacity
       integer(c_int32_t) :: answer
@@ -1887,7 +1887,7 @@ module mpm
       type(c_ptr), intent(in) :: fields(*)
       integer(c_int32_t), value :: order
       integer(c_int64_t), value :: n
-      real(c_float), intent(inout) :: out
+      real(c_float), intent(inout) :: out(*)
       integer(c_int32_t) :: answer
     end function mpm_particles_get_f32
 
@@ -2637,7 +2637,7 @@ module mpm
       import
       type(c_ptr), value :: stepper
       type(c_ptr), value :: particles
-      type(mpm_adaption_desc), intent(in) :: desc
+      type(mpm_adaption_desc), intent(in), optional :: desc
       integer(c_int32_t) :: answer
     end function mpm_stepper_set_adaption
 
@@ -2672,7 +2672,7 @@ module mpm
       import
       type(c_ptr), value :: stepper
       type(c_ptr), value :: particles
-      type(mpm_heat_desc), intent(in) :: desc
+      type(mpm_heat_desc), intent(in), optional :: desc
       integer(c_int32_t) :: answer
     end function mpm_stepper_set_heat
 
@@ -2749,8 +2749,8 @@ module mpm
       import
       type(c_ptr), value :: stepper
       integer(c_int32_t), value :: count
-      type(c_ptr), intent(out) :: piece
-      integer(c_int64_t), intent(in) :: bytes(*)
+      type(c_ptr), intent(in), optional :: piece(*)
+      integer(c_int64_t), intent(in), optional :: bytes(*)
       integer(c_int32_t) :: answer
     end function mpm_state_load_pieces
 
@@ -2807,7 +2807,7 @@ module mpm
       type(c_funptr), value :: write
       type(c_ptr), value :: user
       integer(c_int32_t), value :: count
-      type(c_ptr), intent(in) :: fields(*)
+      type(c_ptr), intent(in), optional :: fields(*)
       integer(c_int32_t) :: answer
     end function mpm_write_particles_to
 
@@ -2844,7 +2844,7 @@ module mpm
       type(c_funptr), value :: write
       type(c_ptr), value :: user
       integer(c_int32_t), value :: count
-      type(c_ptr), intent(in) :: fields(*)
+      type(c_ptr), intent(in), optional :: fields(*)
       integer(c_int32_t) :: answer
     end function mpm_write_grid_to
 

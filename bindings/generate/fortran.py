@@ -22,19 +22,25 @@ ARRAYS = {
     "mpm_tangent_fn": {"tangent"}, "mpm_inside_fn": {"inside"}, "mpm_solve_fn": {"solution"}, "mpm_particle_fn": {"add"},
     "mpm_velocity_fn": {"prescribed", "velocity"}, "mpm_node_fn": {"velocity", "force"}, "mpm_friction_fn": {"friction"},
     "mpm_motion_fn": {"velocity", "angular_velocity"}, "mpm_traction_fn": {"add"},
-    "mpm_marker_velocity_fn": {"add"},
+    "mpm_marker_velocity_fn": {"add"}, "mpm_particles_get_f32": {"out"}, "mpm_heat_fn": {"power"}, "mpm_adaption_fn": {"accept"},
+    "mpm_reduce_fn": {"values"}, "mpm_gather_fn": {"all"},
 }
+# The names of those through which C writes one.
+SINGLE = {"added", "body", "bytes", "component_stride", "components", "count", "dt", "first_id", "hash", "high", "iterations", "low",
+          "n", "part", "parts", "peak_bytes", "symmetric", "type", "value_default", "writable"}
 # Structs of which a pointer means several.
 ARRAY_STRUCTS = {"mpm_param"}
 NULLABLE = {
-    "mpm_context_create": {"desc"}, "mpm_context_memory": {"bytes", "peak_bytes"}, "mpm_material_create": {"params"},
+    "mpm_context_create": {"desc"}, "mpm_context_part": {"part", "parts"}, "mpm_context_memory": {"bytes", "peak_bytes"}, "mpm_material_create": {"params"},
     "mpm_material_model_param": {"name", "unit", "text", "value_default", "low", "high"},
     "mpm_material_state_name": {"name", "unit", "text"}, "mpm_material_update": {"tangent", "symmetric"},
     "mpm_particles_add": {"velocity", "size", "ids", "first_id"}, "mpm_particles_fill_box": {"first_id", "count"},
     "mpm_particles_fill_ball": {"first_id", "count"}, "mpm_particles_fill": {"first_id", "count"},
     "mpm_particles_fill_mesh": {"first_id", "count"},
     "mpm_particles_field_info": {"field", "type", "components", "writable"}, "mpm_particles_get": {"ids"},
-    "mpm_particles_set": {"ids"}, "mpm_stepper_create": {"desc"}, "mpm_step": {"info"}, "mpm_advance": {"info"},
+    "mpm_particles_set": {"ids"}, "mpm_particles_pack": {"ids"}, "mpm_stepper_set_balance": {"desc"},
+    "mpm_stepper_set_adaption": {"desc"}, "mpm_stepper_set_heat": {"desc"}, "mpm_write_particles_to": {"fields"},
+    "mpm_write_grid_to": {"fields"}, "mpm_state_load_pieces": {"piece", "bytes"}, "mpm_stepper_create": {"desc"}, "mpm_step": {"info"}, "mpm_advance": {"info"},
     "mpm_step_end": {"info"}, "mpm_stepper_residuals": {"residual"}, "mpm_stepper_set_contact": {"desc"},
     "mpm_obstacle_set_pose": {"position", "orientation", "velocity", "angular_velocity"},
     "mpm_obstacle_get_pose": {"position", "orientation", "velocity", "angular_velocity"},
@@ -46,13 +52,18 @@ NULLABLE = {
 
 
 def check_tables(api):
-    """Sees that the tables above name what there is."""
+    """Sees that the tables above name what there is, and that they tell of every value that C writes."""
     there = {f["name"]: {a["name"]: a["type"] for a in f["arguments"]} for f in api["functions"] + api["callbacks"]}
     for table in (ARRAYS, NULLABLE):
         for function, names in table.items():
             for name in names:
                 if not there[function][name]["pointer"]:
                     raise SystemExit(f"fortran.py: {function}: '{name}' is no pointer")
+    for function, arguments in there.items():
+        for name, kind in arguments.items():
+            values = kind["pointer"] == 1 and not kind["const"] and kind["base"] in KINDS
+            if values and name not in SINGLE and name not in ARRAYS.get(function, ()):
+                raise SystemExit(f"fortran.py: {function}: say in ARRAYS or in SINGLE how many values '{name}' has")
 
 
 def check_names(names, where):
@@ -94,7 +105,7 @@ def argument(function, name, kind):
     if kind["kind"] == "handle" or base in ("void", "char") and depth == 2:
         if depth == 1:
             return f"type(c_ptr), value :: {name}"
-        if base == "char" and kind["c"].count("const") == 2:
+        if kind["c"].count("const") == 2:
             return f"type(c_ptr), intent(in){optional} :: {name}(*)"
         return f"type(c_ptr), intent(out){optional} :: {name}"
     if depth == 2:
