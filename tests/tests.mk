@@ -49,13 +49,15 @@ check-structure: $(STATIC_LIB)
 measure-structure: $(STATIC_LIB)
 	@$(STRUCTURE) --measure
 
-# Suites run side by side, each in a process and a scratch folder of its own; what one prints stays together.
+# Suites run side by side, each in a process and a scratch folder of its own; what one prints stays together. Limits of
+# time are for what hangs: machines are slower than that on which they were set, and busy.
 #: check-unit            the unit tests, by Check; SUITES="a b:c" selects suites, and of b the case c
 SUITES ?= $(shell sed -n 's/^SUITE(\(.*\))$$/\1/p' tests/unit/suites.h)
 JOBS ?= $(shell nproc)
 check-unit: $(UNIT)
 	@mkdir -p $(SUITES:%=$(BUILD)/tests/scratch/%)
-	@printf '%s\n' $(SUITES) | $(TEST_ENVIRONMENT) xargs -P $(JOBS) -I{} sh -c \
+	@export CK_TIMEOUT_MULTIPLIER=$${CK_TIMEOUT_MULTIPLIER:-4}; \
+	printf '%s\n' $(SUITES) | $(TEST_ENVIRONMENT) xargs -P $(JOBS) -I{} sh -c \
 	  'suite={}; case $$suite in *:*) export CK_RUN_CASE=$${suite#*:} ;; esac; \
    out=$$(CK_RUN_SUITE=$${suite%:*} MPM_SCRATCH="$$MPM_SCRATCH/{}" $(UNIT) 2>&1); status=$$?; echo "$$out"; \
    case $$out in *"Checks: 0,"*) echo "check-unit: there is no suite or case $$suite" >&2; status=1 ;; esac; \
