@@ -77,6 +77,7 @@ void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis
                           .period = periodic ? cells : 0.0,
                           .inverse_period = periodic ? 1.0 / cells : 0.0,
                           .tile_base = (double)coord[k] * edge - (double)MPMI_RING - grid->below,
-                          .middle = 0.5 * (edge + 2 * MPMI_RING - 1)};
+                          .middle = 0.5 * (edge + 2 * MPMI_RING - 1),
+                          .still = mpmi_is_total_lagrangian(grid)};
   }
 }

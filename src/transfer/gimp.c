@@ -5,7 +5,7 @@
 #include "transfer/basis.h"
 
 /* Domains are kept this far from 0, where the gradient has no value at the nodes. */
-#define SMALLEST_DOMAIN 1e-12
+#define SMALLEST_DOMAIN 1e-9
 
 /* Edges of the domains in cells: size |F_kk| / h, within (0, 1]. */
 MPMI_INLINE void domain_edges(const mpmi_axis *a, int64_t n, const mpmi_chunk *at, double *edge) {
@@ -35,17 +35,18 @@ MPMI_INLINE void gimp_axis(const mpmi_axis *a, int64_t n, const mpmi_chunk *at, 
     double xi = (at->x[p] - a->origin) * inverse;
     double node = mpmi_round(xi), f = xi - node, l = edge[p];
     double upper = 0.5 * l + f, lower = 0.5 * l - f; /* how far the domain reaches beyond the node */
-    double above = lower <= 0.0 ? f : upper * upper * (0.5 / l), below = lower * lower * (0.5 / l);
-    above = upper <= 0.0 ? 0.0 : above;
-    below = upper <= 0.0 ? -f : below;
-    below = lower <= 0.0 ? 0.0 : below;
+    double below = lower * lower * (0.5 / l), above = upper * upper * (0.5 / l);
+    above = lower <= MPMI_LEAST_REACH ? f : above;
+    above = upper <= MPMI_LEAST_REACH ? 0.0 : above;
+    below = upper <= MPMI_LEAST_REACH ? -f : below;
+    below = lower <= MPMI_LEAST_REACH ? 0.0 : below;
     w[0][p] = below;
     w[1][p] = 1.0 - (below + above);
     w[2][p] = above;
     if (gradient) {
       double share = upper * (1.0 / l); /* of the domain above the node */
-      share = upper <= 0.0 ? 0.0 : share;
-      share = lower <= 0.0 ? 1.0 : share;
+      share = upper <= MPMI_LEAST_REACH ? 0.0 : share;
+      share = lower <= MPMI_LEAST_REACH ? 1.0 : share;
       g[0][p] = (share - 1.0) * inverse;
       g[1][p] = (1.0 - 2.0 * share) * inverse;
       g[2][p] = share * inverse;

@@ -17,6 +17,7 @@ typedef struct mpmi_axis {
   double period, inverse_period; /* in cells; 0 when the axis is not periodic */
   double tile_base;              /* node at the corner of the tile */
   double middle; /* of the valid first nodes, relative to tile_base: picks the periodic image */
+  int32_t still; /* particles stay where they were put: total Lagrangian */
 } mpmi_axis;
 
 /* Where particles are, each array at slot 0, and for GIMP the edges of their domains: size, or NULL for one

@@ -6,5 +6,6 @@
 
 TCase *schemes_options_case(void);
 TCase *schemes_flight_case(void);
+TCase *schemes_lattices_case(void);
 
 #endif

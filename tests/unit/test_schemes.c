@@ -192,5 +192,6 @@ Suite *schemes_suite(void) {
   suite_add_tcase(suite, tc);
   suite_add_tcase(suite, schemes_options_case());
   suite_add_tcase(suite, schemes_flight_case());
+  suite_add_tcase(suite, schemes_lattices_case());
   return suite;
 }
