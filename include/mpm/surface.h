@@ -6,9 +6,10 @@
  * A marker is a small patch of a surface: a position and an area vector, the area times the normal that
  * points out of the material. The material carries it along and stretches it. Pressure, tractions and the
  * host's callback load it, and its force goes to the nodes around it, whole: what of it a node without mass
- * would take goes to the others, so that force and moment are kept; the force alone on the linear basis and
- * with GIMP where a marker lies in a cell with too few nodes that have mass. Nothing depends on how many
- * particles lie under a face, and the load acts on the face, not at the particles' centres behind it.
+ * would take goes to the others, so that force and moment are kept; the force alone where the nodes with
+ * mass around a marker are too few: on the linear basis and with GIMP in a cell at the rim, with quadratic
+ * and cubic splines about a cell from the nearest particle. Nothing depends on how many particles lie under
+ * a face, and the load acts on the face, not at the particles' centres behind it.
  *
  * Vectors have as many components as the grid has dimensions. Areas are per thickness in 2-D (of sheets that
  * at the start), and in 1-D numbers with a sign, which points out of the material. Forces and areas are

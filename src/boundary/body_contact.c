@@ -214,6 +214,21 @@ static double give_friction(mpmi_bound *bound, mpmi_touch *touch, const encounte
   return size > 0.0 ? weighted(e, change) / size : 0.0;
 }
 
+/* Returns by how much the friction of sliding slows the approach, for a unit normal impulse. Between free
+ * nodes it is nothing. At a node that is held along an axis both impulses act along what is left to it:
+ * each alone would stop it, and the normal one is to do what friction leaves. */
+static double help_of_friction(const mpmi_touch *touch, const encounter *e, double approach, double most) {
+  double slip[3], change[3], squared = 0.0;
+  for (int32_t c = 0; c < 3; ++c) {
+    slip[c] = e->velocity[c] - approach * touch->normal[c];
+    squared += slip[c] * slip[c];
+  }
+  if (!(touch->friction > 0.0 && squared > 0.0)) return 0.0;
+  yield_to(e, slip, change);
+  const double helps = -touch->friction * mpmi_inner(touch->normal, change) / sqrt(squared);
+  return helps > MPMI_NEARLY_HELD * most ? helps : 0.0;
+}
+
 /* Lets the bodies push each other. Impulses of further sweeps are added to those of the first, and only the
  * sum must push. Returns by how much velocities changed. */
 static double push(mpmi_bound *bound, mpmi_touch *touch) {
@@ -221,7 +236,7 @@ static double push(mpmi_bound *bound, mpmi_touch *touch) {
   encounter e = encounter_of(bound, touch, 0);
   const double compliance = weighted(&e, touch->normal);
   const double most = fmax(fmax(e.compliance[0], e.compliance[1]), e.compliance[2]);
-  double approach = mpmi_inner(e.velocity, touch->normal);
+  double approach = mpmi_inner(e.velocity, touch->normal), rubbing[3];
   if (!(compliance > MPMI_NEARLY_HELD * most)) {
     touch->ambiguous = 1; /* both are held along the normal */
     return 0.0;
@@ -231,7 +246,15 @@ static double push(mpmi_bound *bound, mpmi_touch *touch) {
   const int32_t apart = !mpmi_detects_by_velocity(rule) && touch->gap > hair;
   const double closing = apart ? touch->gap / bound->step->dt : 0.0;
   const double pull = apart ? 0.0 : rule->adhesion * touch->area * bound->step->velocity_dt;
-  const double normal = fmax(-pull, touch->normal_impulse - (approach + closing) / compliance);
+  const double helps = e.free ? 0.0 : help_of_friction(touch, &e, approach, most);
+  double normal = touch->normal_impulse - (approach + closing) / compliance;
+  if (helps > 0.0) {
+    yield_to(&e, touch->tangential, rubbing);
+    normal = (compliance * touch->normal_impulse + mpmi_inner(touch->normal, rubbing) - helps * pull -
+              approach - closing) /
+             (compliance + helps);
+  }
+  normal = fmax(-pull, normal);
   const double moved = fabs(normal - touch->normal_impulse) * compliance;
   if (e.free) { /* it turns, too, and slips otherwise than before */
     touch->dissipation += press(bound, touch, &e, normal);

@@ -79,7 +79,8 @@ static void record_mirrors(mpmi_balance *balance) {
           record_mirror(balance, &newton->outer[i], &newton->term[t], c);
 }
 
-/* Friction walls are surfaces, and nodes that they push have no other holder there. */
+/* Friction walls are surfaces. What they push has no other holder on the components that can move; along
+ * those that cannot the holder's force has theirs in it. */
 static void record_friction_walls(mpmi_balance *balance) {
   const mpmi_contact_nodes *contact = &balance->nodes->contact;
   for (int64_t i = 0; i < contact->touch_count; ++i) {
@@ -87,6 +88,7 @@ static void record_friction_walls(mpmi_balance *balance) {
     const mpmi_party *wall = &contact->party[touch->party[0]], *body = &contact->party[touch->party[1]];
     if (!touch->closed || wall->surface < 0 || contact->surface[wall->surface].face < 0) continue;
     for (int32_t c = 0; c < balance->settings->grid->dim; ++c) {
+      if (!(body->inverse_mass[c] > 0.0)) continue;
       const double impulse = touch->normal_impulse * touch->normal[c] + touch->tangential[c];
       balance->nodes->impulse[body->slot].given[c] += impulse;
       balance->nodes->impulse[body->slot].change[c] += impulse * body->inverse_mass[c];

@@ -22,6 +22,9 @@
 /* The least determinant of sum (x_i - x) grad u_i^T by which gradients are corrected: with less, nodes of too
  * few lines are left. */
 #define LEAST_SPREAD 0.25
+/* The least share of a marker's weights that nodes with mass must have for gradients. With less they are
+ * rounding, as those of a marker on a row without mass are. */
+#define LEAST_SUM 1e-8
 
 typedef struct marker_job {
   mpmi_step *step;
@@ -172,6 +175,16 @@ static void make_linear(int32_t dim, stencil *of) {
   }
 }
 
+/* Gives the weights to nodes with mass: with the gradients, or without where there are none. */
+static void give_to_mass(const marker_job *job, stencil *of) {
+  const int32_t dim = job->step->settings->grid->dim;
+  if (find_shares(job, of)) return;
+  if (normalise(dim, of) > LEAST_SUM)
+    make_linear(dim, of);
+  else
+    memset(of->g, 0, sizeof of->g);
+}
+
 /* Keeps the shape functions before they are changed. */
 static void keep_plain(const marker_job *job, int64_t marker, const stencil *from) {
   const mpmi_marker_nodes *around = &job->surface->around;
@@ -214,7 +227,7 @@ static void find_nodes_task(void *data, int64_t task) {
     for (int64_t p = 0; p < n; ++p) {
       list_nodes(job, &W, p, mpmi_marker_place_of(&markers->at[begin + p], grid), &near);
       keep_plain(job, begin + p, &near);
-      if (!find_shares(job, &near) && normalise(grid->dim, &near) > 0.0) make_linear(grid->dim, &near);
+      give_to_mass(job, &near);
       keep_nodes(job, begin + p, &near);
     }
   }

@@ -70,7 +70,8 @@ int32_t mpmi_is_on_wall(const mpmi_settings *settings, int32_t k, double *x) {
 }
 
 /* Contact acts on nodes, and a corner that is sharper than a cell may come through between them. The plane of
- * a friction wall then stops the particle itself, without friction, and takes the momentum that it stops. */
+ * a friction wall then stops the particle itself, without friction, and takes the momentum that it stops. In
+ * quasi-static steps velocities are ways by dt, and there is none. */
 static int32_t stop_at_wall(mpmi_batch *b, int64_t slot, int32_t k, double *x) {
   const mpmi_settings *settings = b->step->settings;
   const int32_t above = *x > settings->grid->upper[k];
@@ -81,7 +82,7 @@ static int32_t stop_at_wall(mpmi_batch *b, int64_t slot, int32_t k, double *x) {
   double *v = mpmi_component_row(b->set, MPMI_VELOCITY, 1, k) + slot;
   if (above ? *v <= 0.0 : *v >= 0.0) return 1;
   mpmi_stops *stops = &b->step->work->block_stops[b->block];
-  const double momentum = mpmi_f64(b->set, MPMI_MASS, 0)[slot] * *v;
+  const double momentum = settings->desc.quasi_static ? 0.0 : mpmi_f64(b->set, MPMI_MASS, 0)[slot] * *v;
   stops->impulse[2 * k + above] -= momentum;
   stops->energy += 0.5 * momentum * *v;
   *v = 0.0;

@@ -68,6 +68,8 @@ static inline mpm_contact_info touch_of(const world *w, const mpm_obstacle *obst
 
 /* Adds the cases of obstacle_states.c. */
 void add_obstacle_states(Suite *suite);
+/* Adds those of obstacle_held.c. */
+void add_obstacle_held(Suite *suite);
 /* Adds those of obstacle_corners.c. */
 void add_obstacle_corners(Suite *suite);
 /* Adds those of obstacle_reactions.c. */

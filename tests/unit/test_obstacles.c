@@ -789,6 +789,7 @@ Suite *obstacles_suite(void) {
   suite_add_tcase(suite, same);
   suite_add_tcase(suite, motion);
   add_obstacle_states(suite);
+  add_obstacle_held(suite);
   add_obstacle_corners(suite);
   add_obstacle_reactions(suite);
   return suite;

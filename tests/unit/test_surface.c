@@ -161,6 +161,35 @@ START_TEST(light_nodes_take_little) {
 }
 END_TEST
 
+/* A marker that lies off a row of nodes without mass by rounding gives all of its force to the others. */
+START_TEST(beside_rows_without_mass) {
+  for (int32_t basis = MPM_LINEAR; basis <= MPM_BSPLINE3; ++basis)
+    for (int32_t i = 0; i < 6; ++i) {
+      world w;
+      world_desc desc = world_default(2, 8, 0.1);
+      desc.grid.basis = basis;
+      desc.grid.boundary_basis = basis != MPM_LINEAR;
+      world_open(&w, &desc);
+      const double low[2] = {0.1, 0.3}, high[2] = {0.6, 0.7}, area[2] = {0.0, 0.05};
+      const double at[2] = {0.33 + 0.011 * i, 0.8 - (i % 3 + 1) * 0x1p-53};
+      world_fill(&w, w.set[0], low, high, 2);
+      mpm_surface_desc d = load_desc();
+      d.traction[1] = -100.0;
+      mpm_surface *s = put_surface(&w, &d);
+      ck_ok(&w, mpm_surface_add(s, 1, at, area, NULL));
+      world_step(&w, 1e-3);
+      double force[2], edges[2];
+      ck_ok(&w, mpm_surface_get(s, "force", MPM_F64, 2, 1, NULL, force));
+      ck_ok(&w, mpm_surface_get(s, "area", MPM_F64, 2, 1, NULL, edges));
+      ck_within("force", force[1], -5.0, 1e-9);
+      ck_within("what arrives", w.info.momentum[1], 1e-3 * force[1], 1e-14);
+      ck_within("area", edges[1], area[1], 1e-3 * area[1]);
+      drop_surface(&w, s);
+      world_close(&w);
+    }
+}
+END_TEST
+
 Suite *surface_suite(void);
 Suite *surface_suite(void) {
   Suite *suite = suite_create("surface");
@@ -170,6 +199,7 @@ Suite *surface_suite(void) {
   tcase_add_loop_test(loads, loads_beside_walls, 0, BROAD);
   tcase_add_loop_test(loads, buoyancy, 0, BROAD);
   tcase_add_test(loads, light_nodes_take_little);
+  tcase_add_test(loads, beside_rows_without_mass);
   tcase_set_timeout(loads, 60);
   suite_add_tcase(suite, loads);
   add_surface_motion(suite);

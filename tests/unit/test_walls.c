@@ -150,5 +150,6 @@ Suite *walls_suite(void) {
   suite_add_tcase(suite, walls_space_case());
   suite_add_tcase(suite, walls_balance_case(wide));
   suite_add_tcase(suite, walls_flow_case());
+  suite_add_tcase(suite, walls_implicit_case());
   return suite;
 }

@@ -25,5 +25,6 @@ TCase *walls_symmetry_case(void);
 TCase *walls_space_case(void);
 TCase *walls_balance_case(TCase *wide);
 TCase *walls_flow_case(void);
+TCase *walls_implicit_case(void);
 
 #endif
