@@ -49,10 +49,12 @@ check-structure: $(STATIC_LIB)
 measure-structure: $(STATIC_LIB)
 	@$(STRUCTURE) --measure
 
-# Suites run side by side, each in a process and a scratch folder of its own; what one prints stays together. Limits of
+# Suites run side by side, the long ones first, each in a process and a scratch folder of its own; what one prints stays together. Limits of
 # time are for what hangs: machines are slower than that on which they were set, and busy.
 #: check-unit            the unit tests, by Check; SUITES="a b:c" selects suites, and of b the case c
-SUITES ?= $(shell sed -n 's/^SUITE(\(.*\))$$/\1/p' tests/unit/suites.h)
+ALL_SUITES = $(shell sed -n 's/^SUITE(\(.*\))$$/\1/p' tests/unit/suites.h)
+LONG_SUITES = shared_contact shared_solvers implicit determinism exact impact allocation schemes walls contact
+SUITES ?= $(LONG_SUITES) $(filter-out $(LONG_SUITES),$(ALL_SUITES))
 JOBS ?= $(shell nproc)
 check-unit: $(UNIT)
 	@mkdir -p $(SUITES:%=$(BUILD)/tests/scratch/%)
