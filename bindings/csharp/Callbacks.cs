@@ -201,7 +201,8 @@ namespace Mpm {
     public MonoPInvokeCallbackAttribute(Type type) {}
   }
 
-  /// <summary>A function of the host where C finds it.</summary>
+  /// <summary>A function of the host where C finds it. What C has is weak: the object that it was given to keeps it, so
+  /// that a function which refers to that object does not keep both for ever.</summary>
   internal sealed class Slot {
     public readonly Core Core;
     public readonly Delegate Function;
@@ -213,7 +214,7 @@ namespace Mpm {
       Core = core;
       Function = function;
       Second = second;
-      handle = GCHandle.Alloc(this);
+      handle = GCHandle.Alloc(this, GCHandleType.Weak);
     }
     /// <summary>The first argument of the callback.</summary>
     public IntPtr User { get { return GCHandle.ToIntPtr(handle); } }
@@ -413,7 +414,7 @@ namespace Mpm {
       try {
         ((Action<int, string>)slot.Function)(level, Text.Of((IntPtr)text));
       } catch (Exception exception) {
-        slot.Core.Keep(exception);
+        slot.Core.KeepLogged(exception);
       }
     }
 

@@ -72,25 +72,42 @@ namespace Mpm {
     public IntPtr Pointer;
     const int First = -1000000000;
     readonly List<Exception> thrown = new List<Exception>();
+    /// <summary>What the log threw first: the call that told it something goes on.</summary>
+    Exception logged;
     readonly Queue<Node> burials = new Queue<Node>();
     /// <summary>What could not be freed yet, as views were out: garbage is collected in any order.</summary>
     readonly List<Node> refused = new List<Node>();
+    const int Idle = 0, Calling = 1, Burying = 2;
     int busy;
 
+    bool TryEnter() {
+      var wait = new SpinWait();
+      for (;;) {
+        int before = Interlocked.CompareExchange(ref busy, Calling, Idle);
+        if (before == Idle) return true;
+        if (before == Calling) return false;
+        wait.SpinOnce(); // the collector's thread frees something: that runs nothing of the host
+      }
+    }
     /// <summary>Begins a call; another thread's, or that of a callback, is refused.</summary>
     public void Enter() {
-      if (Interlocked.Exchange(ref busy, 1) != 0)
+      if (!TryEnter())
         throw new MpmException(MPM_E_STATE, "another call on the context is under way: this one was made in a callback, or on " +
           "another thread");
     }
+    /// <summary>Begins a call where none is under way.</summary>
+    public bool Enters() {
+      return TryEnter();
+    }
     /// <summary>Ends a call, and frees what was waiting for that.</summary>
     public void Leave() {
+      Interlocked.Exchange(ref busy, Burying);
       for (;;) {
         for (;;) {
           Node node;
           lock (burials) {
             if (burials.Count == 0) {
-              Interlocked.Exchange(ref busy, 0);
+              Interlocked.Exchange(ref busy, Idle);
               break;
             }
             node = burials.Dequeue();
@@ -106,14 +123,14 @@ namespace Mpm {
           refused.Clear();
         }
         lock (burials) {
-          if (burials.Count == 0 || Interlocked.Exchange(ref busy, 1) != 0) return;
+          if (burials.Count == 0 || Interlocked.CompareExchange(ref busy, Burying, Idle) != Idle) return;
         }
       }
     }
     /// <summary>Frees something: now, or after the call that is under way.</summary>
     public void Bury(Node node) {
       lock (burials) burials.Enqueue(node);
-      if (Interlocked.Exchange(ref busy, 1) == 0) Leave();
+      if (Interlocked.CompareExchange(ref busy, Burying, Idle) == Idle) Leave();
     }
 
     /// <summary>Keeps an exception of a callback and gives the status that stands for it.</summary>
@@ -123,19 +140,26 @@ namespace Mpm {
         return First - (thrown.Count - 1);
       }
     }
-    /// <summary>What comes of a call that ends: throws what a callback threw, or the library's own sentence. The stepper says
-    /// which of several exceptions is the cause, whatever the threads.</summary>
+    /// <summary>Keeps an exception of the log, which stops no call.</summary>
+    public void KeepLogged(Exception exception) {
+      lock (thrown) logged = logged ?? exception;
+    }
+    /// <summary>What comes of a call that ends: throws what a callback threw, where that stopped it, or the library's own
+    /// sentence; else what the log threw. The stepper says which of several exceptions is the cause, whatever the
+    /// threads.</summary>
     public unsafe void Finish(int status, IntPtr stepper) {
       Exception cause = null;
       MpmException error = status == MPM_OK ? null : MpmException.Of(status, Pointer);
       lock (thrown) {
-        if (thrown.Count > 0) {
+        if (status == MPM_E_CALLBACK && thrown.Count > 0) {
           var info = StepInfo.Empty();
-          if (status == MPM_E_CALLBACK && stepper != IntPtr.Zero) Native.mpm_stepper_info(stepper, &info);
+          if (stepper != IntPtr.Zero) Native.mpm_stepper_info(stepper, &info);
           long number = info.callback_status <= First ? (long)First - info.callback_status : 0;
           cause = thrown[number < thrown.Count ? (int)number : 0];
-          thrown.Clear();
         }
+        thrown.Clear();
+        if (status == MPM_OK) cause = logged;
+        logged = null;
       }
       Leave();
       if (cause != null) ExceptionDispatchInfo.Capture(cause).Throw();
@@ -220,10 +244,11 @@ namespace Mpm {
 
     /// <summary>Makes a call of C on the object, and throws where it was not done.</summary>
     internal void Call(Func<IntPtr, int> call, bool steps = false) {
-      IntPtr pointer = Pointer;
+      IntPtr pointer;
       node.Core.Enter();
       int status;
       try {
+        pointer = Pointer; // which nobody frees now
         status = call(pointer);
       } catch {
         node.Core.Leave();
@@ -250,7 +275,8 @@ namespace Mpm {
         IntPtr values);
     internal unsafe void Exchange<T>(FieldCall call, string field, T[] values, int components, long n, long[] ids) {
       Pinned(values, at => Call(p => {
-        fixed (byte* name = Text.Bytes(field)) fixed (long* number = ids)
+        // none is not NULL, which stands for all
+        fixed (byte* name = Text.Bytes(field)) fixed (long* number = ids != null && n == 0 ? new long[1] : ids)
           return call(p, name, FieldView.TypeOf<T>(), components, n, number, at);
       }));
     }

@@ -323,10 +323,16 @@ namespace Mpm {
     ~FieldView() {
       if (node != null && !disposed) node.Release();
     }
-    /// <summary>Gives the memory back; throws MPM_E_ARG if bad values were written.</summary>
+    /// <summary>Gives the memory back; throws MPM_E_ARG if bad values were written. In a callback that is done when its call
+    /// is over, and the next step says what is bad.</summary>
     public void Dispose() {
       if (disposed) return;
-      node.Core.Enter();
+      if (!node.Core.Enters()) {
+        disposed = true;
+        GC.SuppressFinalize(this);
+        node.Release();
+        return;
+      }
       int status = Native.mpm_view_release(view);
       disposed = true;
       GC.SuppressFinalize(this);

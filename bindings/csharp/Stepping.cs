@@ -462,17 +462,14 @@ namespace Mpm {
     }
     /// <summary>The residuals of the last implicit step.</summary>
     public double[] Residuals() {
-      var values = new double[1024];
-      int count = 0;
+      double[] values = null;
       Call(p => {
         int n;
-        fixed (double* first = values) {
-          int status = Native.mpm_stepper_residuals(p, values.Length, first, &n);
-          count = n;
-          return status;
-        }
+        int status = Native.mpm_stepper_residuals(p, 0, null, &n);
+        if (status != MPM_OK) return status;
+        values = new double[n];
+        fixed (double* first = values) return Native.mpm_stepper_residuals(p, n, first, &n);
       });
-      Array.Resize(ref values, Math.Min(count, values.Length));
       return values;
     }
     /// <summary>Lends a nodal field of a body. Steps are refused until the view is disposed of.</summary>

@@ -67,6 +67,12 @@ def layout(api):
         if one["arguments"] and one["arguments"][0]["name"] == "user":
             results = 0 if one["result"]["base"] == "void" and not one["result"]["pointer"] else 1
             out.append(f"  {one['name']}: [{literal([wasm_type(a['type']) for a in one['arguments']])}, {results}],")
+    out += ["};", "", "// The parameters of functions that are numbers: [place, name, kind].", "export const functions = {"]
+    for one in api["functions"]:
+        numbers = [[k, a["name"], NUMBERS[a["type"]["base"]]] for k, a in enumerate(one["arguments"])
+                   if not a["type"]["pointer"] and NUMBERS.get(a["type"]["base"]) in ("i32", "u32", "i64", "f64")]
+        if numbers:
+            out.append(f"  {one['name']}: {literal(numbers)},")
     return "\n".join(out + ["};", ""])
 
 

@@ -58,7 +58,8 @@ function addressOf(machine, type) {
         if (!slot) throw new Error('a callback was called after its owner was disposed of');
         return machine.lend(() => ADAPTERS[type](machine, slot.run, ...values));
       } catch (error) {
-        return machine.keep(error);
+        if (results) return machine.keep(error);
+        machine.keepLogged(error);
       }
     };
     const table = machine.raw.__indirect_function_table;
@@ -125,6 +126,7 @@ function status(result) {
     throw new TypeError(
       `a callback returned ${typeof result?.then === 'function' ? 'a promise' : String(result)}; it returns nothing, or a status`,
     );
+  if (result !== (result | 0)) throw new RangeError(`a callback returned ${result}, which is no status`);
   return result;
 }
 

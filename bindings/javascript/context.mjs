@@ -26,10 +26,19 @@ export class Context extends Handle {
       });
       const out = a.room('pointer');
       const status = machine.raw.mpm_context_create(to, out);
-      if (status) throw new MpmError(status, machine.text(machine.raw.mpm_status_name(status)), machine.text(text));
+      if (status) {
+        machine.dropLogged();
+        throw new MpmError(status, machine.text(machine.raw.mpm_status_name(status)), machine.text(text));
+      }
       return machine.read(out, 'pointer');
     });
     super(machine, null, 'context', at, [], functions);
+    try {
+      machine.tellLogged();
+    } catch (error) {
+      this.dispose();
+      throw error;
+    }
   }
   memory() {
     const [bytes, peak_bytes] = this.ask('mpm_context_memory', [], ['i64', 'i64']);

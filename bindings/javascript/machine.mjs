@@ -1,5 +1,5 @@
 // One instance of the library in WebAssembly: its memory, how arguments get there, and how calls fail.
-import { constants as C, structs } from './layout.mjs';
+import { constants as C, functions, structs } from './layout.mjs';
 
 /** What a call of the library says when it was not done. */
 export class MpmError extends Error {
@@ -25,11 +25,19 @@ const FIRST_THROWN = -1000000000; // what a callback that throws returns, and be
 const encoder = new TextEncoder();
 const decoder = new TextDecoder();
 
-/** An integer of a host: booleans count as 0 and 1. */
-function integer(value, what) {
-  const number = typeof value === 'boolean' ? Number(value) : value;
-  if (!Number.isInteger(number)) throw new TypeError(`${what} is ${String(value)}, and has to be an integer`);
-  return number;
+const LIMITS = { i32: [-(2 ** 31), 2 ** 31 - 1], u32: [0, 2 ** 32 - 1], i64: [-(2 ** 63), 2 ** 63 - 1024], u8: [0, 255] };
+
+/** An integer of a host, of a kind of C where that is given. */
+function integer(value, what, kind) {
+  if (!Number.isInteger(value)) throw new TypeError(`${what} is ${String(value)}, and has to be an integer`);
+  if (kind && !(value >= LIMITS[kind][0] && value <= LIMITS[kind][1]))
+    throw new RangeError(`${what} is ${value}, and does not fit`);
+  return value;
+}
+
+/** The same for an option or an argument, in which booleans count as 0 and 1. */
+function flag(value, what, kind) {
+  return integer(typeof value === 'boolean' ? Number(value) : value, what, kind);
 }
 
 function real(value, what) {
@@ -47,7 +55,7 @@ function converted(values, kind, what) {
     if (kind === 'f64') out[i] = real(values[i], `${what}[${i}]`);
     else if (kind === 'i64')
       out[i] = typeof values[i] === 'bigint' ? values[i] : BigInt(integer(values[i], `${what}[${i}]`));
-    else out[i] = integer(values[i], `${what}[${i}]`);
+    else out[i] = (kind === 'u8' ? flag : integer)(values[i], `${what}[${i}]`);
     if (kind !== 'f64' && BigInt(out[i]) !== BigInt(values[i]))
       throw new RangeError(`${what}[${i}] is ${values[i]}, and does not fit`);
   }
@@ -70,7 +78,7 @@ class Arguments {
       scratch.used += (count + 15) & ~15;
       return scratch.at + scratch.used - ((count + 15) & ~15);
     }
-    const at = this.#machine.raw.malloc(Math.max(count, 1)) >>> 0;
+    const at = count < 2 ** 32 ? this.#machine.raw.malloc(Math.max(count, 1)) >>> 0 : 0;
     if (!at) throw new MpmError(C.MPM_E_NOMEM, 'MPM_E_NOMEM', `WebAssembly has no memory for ${count} bytes`);
     this.#owned.push(at);
     return at;
@@ -145,6 +153,7 @@ class Arguments {
 export class Machine {
   #view = new DataView(new ArrayBuffer(0));
   #thrown = [];
+  #logged;
   #lent = 0;
   constructor(exports) {
     this.raw = exports;
@@ -166,13 +175,8 @@ export class Machine {
   }
   write(at, kind, value, what = kind) {
     if (kind === 'f64') this.#data.setFloat64(at, real(value, what), true);
-    else if (kind === 'i64') this.#data.setBigInt64(at, BigInt(integer(value, what)), true);
-    else {
-      const number = integer(value, what);
-      if (number !== (kind === 'i32' ? number | 0 : number >>> 0))
-        throw new RangeError(`${what} is ${number}, and does not fit`);
-      this.#data.setInt32(at, number, true);
-    }
+    else if (kind === 'i64') this.#data.setBigInt64(at, BigInt(flag(value, what, 'i64')), true);
+    else this.#data.setInt32(at, flag(value, what, kind === 'i32' ? 'i32' : 'u32'), true);
   }
   read(at, kind) {
     const data = this.#data;
@@ -235,8 +239,31 @@ export class Machine {
     this.#thrown.push(error);
     return FIRST_THROWN - (this.#thrown.length - 1);
   }
+  /** Keeps what a log has thrown, which stops no call. */
+  keepLogged(error) {
+    this.#logged ??= { error };
+  }
+  /** Throws what a log has thrown. */
+  tellLogged() {
+    const logged = this.#logged;
+    this.#logged = undefined;
+    if (logged) throw logged.error;
+  }
+  dropLogged() {
+    this.#logged = undefined;
+  }
+  /** Sees that the arguments of a function are what its parameters are: WebAssembly makes 0 of what is no number. */
+  #check(name, values) {
+    functions[name]?.forEach(([place, parameter, kind]) => {
+      const value = values[place], what = `${name}: ${parameter}`;
+      if (kind === 'f64') real(value, what);
+      else if (typeof value !== 'bigint') flag(value, what, kind);
+      else if (BigInt.asIntN(64, value) !== value) throw new RangeError(`${what} is ${value}, and does not fit`);
+    });
+  }
   /** Makes a call that returns a status; `info` is the address of the mpm_step_info that it fills. */
   call(context, name, values, info = 0) {
+    this.#check(name, values);
     const outer = this.#thrown;
     const thrown = (this.#thrown = []);
     let status;
@@ -245,7 +272,8 @@ export class Machine {
     } finally {
       this.#thrown = outer;
     }
-    if (status === C.MPM_OK) return;
+    if (status === C.MPM_OK) return this.tellLogged();
+    this.dropLogged(); // the error says more
     if (status === C.MPM_E_CALLBACK && thrown.length) {
       const said = info ? this.read(info + structs.mpm_step_info.fields.callback_status[0], 'i32') : 0;
       throw thrown[FIRST_THROWN - said] ?? thrown[0];

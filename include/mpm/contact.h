@@ -5,8 +5,9 @@
  * Sets of one body share one velocity field, and so stick together; each body has its own nodes. Where the
  * nodes of two bodies both have mass, the bodies may touch: the gap between them is measured from their
  * particles, and an impulse acts on the nodes that closes the gap and never more, with Coulomb friction. It
- * has no stiffness and keeps no state from step to step. By default all sets are in body 0, and there is no
- * contact.
+ * has no stiffness and keeps no state from step to step. In implicit steps a node that parts and touches
+ * again and again in the iterations is held in that step, and may be pulled. By default all sets are in
+ * body 0, and there is no contact.
  *
  * @par Sources
  * Several velocity fields with Coulomb friction: Bardenhagen et al., CMES 2(4), 2001. The normal by logistic

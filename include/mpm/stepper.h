@@ -302,10 +302,11 @@ MPM_API mpm_status mpm_stepper_set_motion(mpm_stepper *stepper, mpm_particles *p
 
 /** Sets what a face (MPM_X_MIN to MPM_Z_MAX) does: kind is one of MPM_WALL_NONE to MPM_WALL_FRICTION_NODES.
  * friction is the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is
- * unilateral: its normal impulse only pushes, and its tangential impulse is at most friction times that.
- * MPM_E_ARG: the grid does not have the face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED:
- * MPM_WALL_FRICTION_NODES with MPM_NEWMARK; MPM_WALL_OPEN with total_lagrangian = 1; on the axis of
- * MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP. */
+ * unilateral: its normal impulse only pushes, and its tangential impulse is at most friction times that; but
+ * for a node that parts and touches again and again in the iterations of an implicit step, which is then held
+ * in it and may be pulled. MPM_E_ARG: the grid does not have the face, the face is periodic, or a value is
+ * bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with MPM_NEWMARK; MPM_WALL_OPEN with total_lagrangian = 1;
+ * on the axis of MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP. */
 MPM_API mpm_status mpm_stepper_set_wall(mpm_stepper *stepper, int32_t face, int32_t kind, double friction);
 
 /** Sets the callback that adds accelerations of particles, length/time^2 (b of MPoint theory, eq. 21). It is

@@ -282,7 +282,7 @@ Suite *shared_contact_suite(void) {
   Suite *suite = suite_create("shared_contact");
   TCase *all = tcase_create("bodies");
   tcase_set_timeout(all, 120);
-  add_table(all, wide_case(suite, "more bodies"), bodies_touch, SCENES);
+  add_every(all, wide_case(suite, "more bodies"), bodies_touch, SCENES, 12);
   suite_add_tcase(suite, all);
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 120);

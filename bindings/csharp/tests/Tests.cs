@@ -659,9 +659,76 @@ namespace Mpm {
       using (var scene = new Scene(log: (level, text) => token.ToString())) scene.Stepper.Step(1e-3);
       return new WeakReference(token);
     }
+    sealed class Simulation {
+      public readonly object Token = new object();
+      readonly Scene scene = new Scene();
+      public Simulation() {
+        scene.Stepper.SetForce(Pull);
+        scene.Stepper.Step(1e-3);
+      }
+      int Pull(ref ParticleBatch batch, Columns add) {
+        return scene.Stepper == null || Token == null ? MPM_E_ARG : MPM_OK;
+      }
+    }
+    /// <summary>A function that refers to the object to which it was given.</summary>
+    [MethodImpl(MethodImplOptions.NoInlining)]
+    static WeakReference InACircle() {
+      return new WeakReference(new Simulation().Token);
+    }
+    /// <summary>What the collector's thread frees stands in the way of no call.</summary>
+    static void Collected() {
+      using (var scene = new Scene()) {
+        for (int k = 0; k < 400; k++) {
+          new Particles(scene.Context, scene.Grid, scene.Material).FillBox(new[] { 0.3, 0.3 }, new[] { 0.7, 0.7 }, new[] { 2, 2 });
+          if (k % 10 == 0) GC.Collect();
+          scene.Stepper.Step(1e-6);
+        }
+      }
+    }
+    /// <summary>A view that is disposed of in a callback is given back after it, and no ids are none.</summary>
+    static void Late() {
+      using (var scene = new Scene())
+      using (var other = new Particles(scene.Context, scene.Grid, scene.Material)) {
+        other.FillBox(new[] { 0.3, 0.3 }, new[] { 0.7, 0.7 }, new[] { 2, 2 });
+        var view = scene.Set.Map("velocity");
+        other.Fill(new[] { 0.8, 0.8 }, new[] { 0.9, 0.9 }, new[] { 2, 2 }, (points, inside) => {
+          view.Dispose();
+          return MPM_OK;
+        });
+        scene.Stepper.Step(1e-3);
+        Is(scene.Set.Get<double>("mass", new long[0]).Length, 0, "no ids");
+        scene.Set.Set("mass", new double[0], new long[0]);
+      }
+      var told = 0;
+      Throws<Own>(() => new Scene(log: (level, text) => {
+        told++;
+        throw new Own();
+      }), "a log that throws");
+      Is(told, 1, "calls of the log");
+    }
+    /// <summary>An exception of a callback comes out where it stopped the call, and not where a smaller step was made.</summary>
+    static void Cut() {
+      using (var scene = new Scene())
+      using (var other = new Particles(scene.Context, scene.Grid, scene.Material)) {
+        other.FillBox(new[] { 0.8, 0.8 }, new[] { 0.9, 0.9 }, new[] { 2, 2 });
+        scene.Stepper.Add(other);
+        scene.Stepper.SetForce((ref ParticleBatch batch, Columns add) => {
+          if (batch.dt <= 1e-4) return MPM_OK;
+          if (batch.n > 8) return MPM_CUT_DT;
+          throw new Own();
+        });
+        var go = AdvanceDesc.Default();
+        go.t_end = 1e-3;
+        scene.Stepper.Advance(go);
+        Is(scene.Stepper.Info().t >= 1e-3, true, "the time");
+      }
+    }
     /// <summary>The token dies when C has let go of the context, whose log holds it.</summary>
     static void Lifetimes() {
-      foreach (Func<WeakReference> make in new Func<WeakReference>[] { Forgotten, Disposed }) {
+      Collected();
+      Late();
+      Cut();
+      foreach (Func<WeakReference> make in new Func<WeakReference>[] { Forgotten, Disposed, InACircle }) {
         var tokens = new List<WeakReference>();
         for (int k = 0; k < 60; k++) tokens.Add(make());
         for (int k = 0; k < 10; k++) {

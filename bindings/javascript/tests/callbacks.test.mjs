@@ -455,6 +455,15 @@ test('splitting and merging', () => {
   assert.throws(() => stepper.adaptionInfo(set), MpmError);
 });
 
+test('what a log throws comes out of the call that it is told of', () => {
+  const failing = () => {
+    throw new Error('full');
+  };
+  assert.throws(() => mpm.context({ log: failing }), /full/);
+  const context = mpm.context();
+  assert.equal(context.grid({ dim: 2, cells: [4, 4], spacing: [1, 1] }).dim, 2);
+});
+
 test('the log', () => {
   const lines = [];
   assert.throws(() => mpm.context({ concurrency: 7, log: (level, text) => lines.push([level, text]) }), MpmError);

@@ -36,6 +36,24 @@ test('options are checked before they reach the library', () => {
   assert.throws(() => set.set('velocity', new Float64Array(3)), /entries/);
 });
 
+test('arguments are checked before WebAssembly makes numbers of them', () => {
+  const { context, set, stepper } = scene();
+  const before = stepper.hash();
+  assert.throws(() => stepper.setWall(undefined, C.MPM_WALL_SLIP), /face is undefined/);
+  assert.throws(() => stepper.setWall(2 ** 32, C.MPM_WALL_SLIP), /face is 4294967296, and does not fit/);
+  assert.throws(() => stepper.setWall(C.MPM_X_MIN, C.MPM_WALL_FRICTION, '0.5'), /friction is 0.5, and has to be a number/);
+  assert.throws(() => stepper.setBody(set, 1.7), /body is 1.7/);
+  assert.throws(() => stepper.setTime(0, 2 ** 64), /does not fit/);
+  assert.throws(() => context.grid({ dim: 2, cells: [2 ** 64 + 4096, 4], spacing: [1, 1] }), /does not fit/);
+  assert.equal(stepper.hash(), before);
+  const mask = [true, false, true];
+  assert.throws(() => set.get('mass', mask), /has to be an integer/);
+  assert.throws(() => set.remove(mask), /has to be an integer/);
+  assert.equal(stepper.hash(), before);
+  set.set('prescribed', [true, false], [0]); // of bytes, where booleans are numbers
+  assert.equal(set.get('prescribed', [0])[0], 1);
+});
+
 test('an object of another instance is refused', async () => {
   const other = await load(mpm.module);
   const { grid, material } = scene();

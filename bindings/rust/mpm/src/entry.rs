@@ -49,11 +49,7 @@ impl Core {
 
     /// Frees something: now, or after the call that is under way. What it needs must be part of it.
     pub fn bury(self: &Arc<Self>, burial: impl FnOnce() + Send + 'static) {
-        if let Ok(entry) = self.enter() {
-            burial();
-            drop(entry);
-            return;
-        }
+        // behind what is waiting, which may need that it still is there
         {
             let mut burials = self.burials.lock().unwrap();
             burials.push(Box::new(burial));

@@ -96,7 +96,7 @@
 //! # The rest
 //!
 //! [`sys`] is the interface of C, with all comments of the headers; `as_ptr()` of each object gives its handle there. What
-//! there is there alone: memory of the host, and fields of other sizes in callbacks.
+//! there is there alone: heat, problems in several parts, memory of the host, and fields of other sizes in callbacks.
 #![warn(missing_docs)]
 
 pub use mpm_sys as sys;

@@ -1,4 +1,5 @@
 //! The step in parts.
+use crate::entry::Sent;
 use crate::{sys, Result, Stepper, View, ViewMut};
 
 /// A step in parts, after its first one. It borrows the stepper until it ends; if it goes before, the step is dropped.
@@ -49,10 +50,11 @@ impl Drop for StagedStep<'_> {
         if !self.under_way {
             return;
         }
-        if let Ok(entry) = self.stepper.context.enter() {
-            // SAFETY: the handle lives. A part that failed has ended the step itself, and then this is refused.
-            unsafe { sys::mpm_step_abort(self.stepper.handle) };
-            drop(entry);
-        }
+        let stepper = Sent(self.stepper.handle);
+        self.stepper.context.bury(move || {
+            // SAFETY: the stepper's own burial comes after this. A part that failed has ended the step itself, and then this
+            // is refused.
+            unsafe { sys::mpm_step_abort(stepper.get()) };
+        });
     }
 }

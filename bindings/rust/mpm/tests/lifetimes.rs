@@ -76,6 +76,25 @@ fn what_goes_in_a_callback_is_freed_after_it() {
 }
 
 #[test]
+fn a_step_that_goes_in_a_callback_is_dropped_after_it() {
+    let context = Context::new().unwrap();
+    let (mut stepper, _) = falling(&context, StepperDesc::default()).unwrap();
+    let grid = grid(&context).unwrap();
+    let jelly = Material::new(&context, "neo_hookean", &JELLY).unwrap();
+    let mut other = block(&grid, &jelly).unwrap();
+    let mut staged = Some(stepper.begin(1e-3).unwrap());
+    other
+        .fill(&[0.3, 0.3], &[0.5, 0.5], &[2, 2], |_, inside| {
+            staged.take();
+            inside.fill(0);
+            Ok(())
+        })
+        .unwrap();
+    drop(staged);
+    stepper.step(1e-3).unwrap();
+}
+
+#[test]
 fn forgotten_views_and_steps_leak_and_harm_nothing() {
     let token = Arc::new(());
     let (mut stepper, _) = falling(&watched(&token), StepperDesc::default()).unwrap();
