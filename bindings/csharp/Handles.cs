@@ -80,7 +80,8 @@ namespace Mpm {
     const int Idle = 0, Calling = 1, Burying = 2;
     int busy;
 
-    bool TryEnter() {
+    /// <summary>Begins a call where none is under way.</summary>
+    public bool TryEnter() {
       var wait = new SpinWait();
       for (;;) {
         int before = Interlocked.CompareExchange(ref busy, Calling, Idle);
@@ -94,10 +95,6 @@ namespace Mpm {
       if (!TryEnter())
         throw new MpmException(MPM_E_STATE, "another call on the context is under way: this one was made in a callback, or on " +
           "another thread");
-    }
-    /// <summary>Begins a call where none is under way.</summary>
-    public bool Enters() {
-      return TryEnter();
     }
     /// <summary>Ends a call, and frees what was waiting for that.</summary>
     public void Leave() {
@@ -267,6 +264,10 @@ namespace Mpm {
         pin.Free();
       }
     }
+    /// <summary>Ids for C, for which none of them is not NULL: that stands for all.</summary>
+    internal static long[] Chosen(long[] ids) {
+      return ids != null && ids.Length == 0 ? new long[1] : ids;
+    }
     internal static void Fits(string what, long length, long should) {
       if (length != should) throw new ArgumentException(string.Format("\"{0}\" has {1} values, not {2}", what, length, should));
     }
@@ -275,8 +276,7 @@ namespace Mpm {
         IntPtr values);
     internal unsafe void Exchange<T>(FieldCall call, string field, T[] values, int components, long n, long[] ids) {
       Pinned(values, at => Call(p => {
-        // none is not NULL, which stands for all
-        fixed (byte* name = Text.Bytes(field)) fixed (long* number = ids != null && n == 0 ? new long[1] : ids)
+        fixed (byte* name = Text.Bytes(field)) fixed (long* number = Chosen(ids))
           return call(p, name, FieldView.TypeOf<T>(), components, n, number, at);
       }));
     }

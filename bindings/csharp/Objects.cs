@@ -192,8 +192,7 @@ namespace Mpm {
         int status = Native.mpm_particles_packed_size(p, n, &bytes);
         if (status != MPM_OK) return status;
         packed = new byte[bytes];
-        var first = new long[] { 0 };
-        fixed (long* id = ids != null && n == 0 ? first : ids) fixed (byte* to = packed)
+        fixed (long* id = Chosen(ids)) fixed (byte* to = packed)
           return Native.mpm_particles_pack(p, n, id, (IntPtr)to, bytes);
       });
       return packed;
@@ -327,7 +326,7 @@ namespace Mpm {
     /// is over, and the next step says what is bad.</summary>
     public void Dispose() {
       if (disposed) return;
-      if (!node.Core.Enters()) {
+      if (!node.Core.TryEnter()) {
         disposed = true;
         GC.SuppressFinalize(this);
         node.Release();

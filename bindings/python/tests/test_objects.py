@@ -483,8 +483,10 @@ class States(unittest.TestCase):
         one["velocity"] = np.arange(2.0 * len(one)).reshape(-1, 2)
         packed = one.get_f32("position", "velocity", order=mpm.BY_ID)
         np.testing.assert_array_equal(packed, np.hstack([one["position"], one["velocity"]]).astype(np.float32))
-        loose = one.get_f32("id", "mass")
-        self.assertEqual(sorted(loose[:, 0]), list(range(len(one))))
+        mixed = one.context.particles(one.grid, one.material)
+        mixed.add([[0.1, 0.1], [0.2, 0.1], [0.3, 0.1]], 1e-4, ids=[7, 3, 5])
+        np.testing.assert_array_equal(mixed.get_f32("id", "mass")[:, 0], [3, 5, 7])
+        np.testing.assert_array_equal(mixed.get_f32("id", "mass", order=mpm.LIBRARY_ORDER)[:, 0], [7, 3, 5])
         with self.assertRaises(mpm.Error):
             one.get_f32("position", order=7)
 

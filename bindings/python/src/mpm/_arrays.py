@@ -34,6 +34,14 @@ def columns(values, components, n, dtype):
     return np.ascontiguousarray(array.T)
 
 
+def vectors(values, dim):
+    """Vectors (n, dim) in the library's order; one of them, or numbers in 1-D, may do without the other axis."""
+    array = np.asarray(values, np.float64)
+    if array.ndim < 2:
+        array = array.reshape(-1, 1) if dim == 1 else array.reshape(1, -1)
+    return columns(array, dim, len(array), np.float64)
+
+
 def rows(array, tensor=False):
     """What the library has as [components][n] as (n, components): (n,) for one, (n, 3, 3) for a tensor."""
     if len(array) == 1 and not tensor:

@@ -112,6 +112,13 @@ def fill(struct, options, what):
     return struct
 
 
+def function(fn):
+    """A function of the host, or None for none."""
+    if fn is not None and not callable(fn):
+        raise TypeError(f"{fn!r} is no function")
+    return fn
+
+
 def descriptor(kind, init, options, what):
     """A descriptor with the library's defaults and the options of a call."""
     struct = kind()
@@ -172,9 +179,7 @@ class Context(Handle):
         if fn is None:
             return kind()
         if not hasattr(fn, "address"):
-            if not callable(fn):
-                raise TypeError(f"{fn!r} is no function")
-            return kind(Guard(call, self._raised))
+            return kind(Guard(call if function(fn) else None, self._raised))
         if getattr(fn, "serves", compiler) != compiler:
             raise TypeError(f"a function that mpm.numba.{fn.serves} has compiled is for another callback")
         made = ctypes.cast(fn.address, kind)

@@ -5,7 +5,7 @@ import os
 import numpy as np
 
 from . import _api
-from ._arrays import TYPES, address, chosen, columns, doubles, exactly, lend, rows, whole
+from ._arrays import TYPES, address, chosen, columns, doubles, exactly, lend, rows, vectors, whole
 from ._guard import Guard
 from ._handles import Handle
 from ._library import documented, lib
@@ -67,10 +67,8 @@ class Particles(Handle):
     def add(self, position, volume, velocity=None, size=None, ids=None):
         """Adds particles at position (n, dim), with volume (n,) or one for all. Returns the range of ids, where the library
         gives them."""
-        position = np.asarray(position, np.float64)
-        if position.ndim < 2:
-            position = position.reshape(-1, 1) if self.dim == 1 else position.reshape(1, -1)
-        n = len(position)
+        position = vectors(position, self.dim)
+        n = position.shape[1]
 
         def each(values):
             """Vectors of all particles: one, or a number for all components, stands for all."""
@@ -79,7 +77,7 @@ class Particles(Handle):
             values = np.asarray(values, np.float64)
             return columns(np.broadcast_to(values, (n, self.dim)) if values.ndim < 2 else values, self.dim, n, np.float64)
 
-        position, velocity, size = columns(position, self.dim, n, np.float64), each(velocity), each(size)
+        velocity, size = each(velocity), each(size)
         volume = np.ascontiguousarray(np.broadcast_to(np.asarray(volume, np.float64), (n,)))
         ids = None if ids is None else whole(ids, "ids")
         if ids is not None and ids.shape != (n,):

@@ -7,7 +7,7 @@ import numpy as np
 from . import _api
 from ._arrays import address, lend
 from ._guard import Guard
-from ._handles import Handle, descriptor, fill
+from ._handles import Handle, descriptor, fill, function
 from ._library import documented, lib
 from .batches import AdaptionBatch, ContactBatch, NodeBatch, ParticleBatch
 from .obstacle import Obstacle, contact_desc
@@ -307,9 +307,7 @@ class Stepper(Handle):
         def call(_, info):
             return 1 if fn(StepInfo(_api.step_info.from_buffer_copy(info.contents))) else 0
 
-        if fn is not None and not callable(fn):
-            raise TypeError(f"{fn!r} is no function")
-        watch = Guard(None if fn is None else call, self._context._raised)
+        watch = Guard(call if function(fn) else None, self._context._raised)
         self._set("progress", lib.mpm_stepper_set_progress, _api.progress_fn(watch))
 
     # ---- steps ----

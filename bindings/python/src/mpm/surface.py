@@ -4,7 +4,7 @@ import ctypes
 import numpy as np
 
 from . import _api
-from ._arrays import TYPES, Batch, address, chosen, columns, doubles, rows, scalar, vector, whole
+from ._arrays import TYPES, Batch, address, chosen, columns, doubles, rows, scalar, vector, vectors, whole
 from ._handles import Handle, descriptor, fill
 from ._library import documented, lib
 
@@ -90,21 +90,14 @@ class Surface(Handle):
 
     # ---- markers ----
 
-    def _rows(self, values):
-        """Vectors (n, dim) in the library's order; one of them, or numbers in 1-D, may do without the other axis."""
-        array = np.asarray(values, np.float64)
-        if array.ndim < 2:
-            array = array.reshape(-1, 1) if self.dim == 1 else array.reshape(1, -1)
-        return columns(array, self.dim, len(array), np.float64)
-
     @documented("mpm_surface_add")
     def add(self, position, area=None):
         """Adds markers at position (n, dim), with area vectors (n, dim), or one for all, or without area. Returns the range
         of their ids."""
-        position = self._rows(position)
+        position = vectors(position, self.dim)
         n = position.shape[1]
         if area is not None:
-            area = self._rows(area)
+            area = vectors(area, self.dim)
             area = np.ascontiguousarray(np.broadcast_to(area, (self.dim, n)))
         first = ctypes.c_int64()
         self._context._check(lib.mpm_surface_add(self, n, address(position), address(area), ctypes.addressof(first)))
