@@ -480,4 +480,5 @@ test('the log', () => {
       }),
     /thread/,
   );
+  assert.equal(mpm.context().lastError(), ''); // what it threw is gone
 });
