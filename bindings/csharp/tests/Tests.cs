@@ -712,15 +712,19 @@ namespace Mpm {
       using (var other = new Particles(scene.Context, scene.Grid, scene.Material)) {
         other.FillBox(new[] { 0.8, 0.8 }, new[] { 0.9, 0.9 }, new[] { 2, 2 });
         scene.Stepper.Add(other);
+        var late = other.Pointer;
+        var thrown = 0;
         scene.Stepper.SetForce((ref ParticleBatch batch, Columns add) => {
           if (batch.dt <= 1e-4) return MPM_OK;
-          if (batch.n > 8) return MPM_CUT_DT;
+          if (batch.particles != late) return MPM_CUT_DT;
+          thrown++;
           throw new Own();
         });
         var go = AdvanceDesc.Default();
         go.t_end = 1e-3;
         scene.Stepper.Advance(go);
         Is(scene.Stepper.Info().t >= 1e-3, true, "the time");
+        Is(thrown > 0, true, "exceptions of tries with a larger step");
       }
     }
     /// <summary>The token dies when C has let go of the context, whose log holds it.</summary>
