@@ -11,7 +11,7 @@ compile() { # compiler, standard, language, header
   local source=$scratch/$1-$2.$3
   printf '#include <%s>\n#include <%s>\nint used(void);\nint used(void) { return 0; }\n' "$4" "$4" > "$source"
   # shellcheck disable=SC2086
-  "$1" -std="$2" $warnings -Iinclude -Iumat/include -Impi/include -Ipetsc/include -Impi/parsers -c "$source" -o "$source.o"
+  "$1" -std="$2" $warnings -Iinclude -Iumat/include -Impi/include -Ipetsc/include -Impi/parsers -fsyntax-only "$source"
 }
 
 count=0

@@ -4,6 +4,7 @@
 #include "linalg/methods.h"
 
 #include "linalg_fixture.h"
+#include "tables.h"
 
 /* Solves for a known x with the matrix as it is; the distance from it. */
 static double error_of(int32_t choice, uint64_t seed) {
@@ -302,15 +303,15 @@ TCase *linalg_direct_case(void) {
   TCase *tests = tcase_create("direct");
   tcase_set_timeout(tests, 60);
   tcase_add_checked_fixture(tests, open_solver, close_solver);
-  tcase_add_loop_test(tests, inertia, 0, 12);
+  add_sparse(tests, inertia, 12, 5);
   tcase_add_loop_test(tests, floating_body, 0, 5);
   tcase_add_loop_test(tests, empty_node, 0, 2);
   tcase_add_loop_test(tests, equal_nodes, 0, 10);
   tcase_add_test(tests, zero_diagonal);
-  tcase_add_loop_test(tests, large, 0, 12);
+  add_sparse(tests, large, 12, 5);
   tcase_add_test(tests, structure);
   tcase_add_test(tests, iteration_first);
-  tcase_add_test(tests, stalled);
+  add_sparse(tests, stalled, 1, 2);
   tcase_add_test(tests, inner_cg);
   tcase_add_loop_test(tests, instruction_sets, 0, 2);
   return tests;

@@ -2,6 +2,7 @@
 #include "linalg/multigrid.h"
 
 #include "linalg_fixture.h"
+#include "tables.h"
 
 /* Large enough for three levels, small enough to be solved by the factor beside. */
 static const springs bodies[] = {
@@ -318,13 +319,13 @@ TCase *linalg_multigrid_case(void) {
   tcase_set_timeout(tests, 120);
   tcase_add_checked_fixture(tests, open_solver, close_solver);
   tcase_add_loop_test(tests, solves, 0, BODIES);
-  tcase_add_loop_test(tests, solves_not_symmetric, 0, BODIES);
+  add_sparse(tests, solves_not_symmetric, BODIES, 3);
   tcase_add_loop_test(tests, slender, 0, 4);
   tcase_add_loop_test(tests, stiff_along_lines, 0, 4);
   tcase_add_test(tests, alternating_functions);
   tcase_add_test(tests, sizes);
   tcase_add_loop_test(tests, galerkin, 0, BODIES);
-  tcase_add_loop_test(tests, one_cycle, 0, BODIES);
+  add_sparse(tests, one_cycle, BODIES, 3);
   tcase_add_loop_test(tests, units, 0, 4);
   tcase_add_test(tests, far_apart);
   tcase_add_test(tests, instruction_sets);

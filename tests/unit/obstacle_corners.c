@@ -1,6 +1,7 @@
 /* Corners of bodies that are sharper than a cell, on friction walls: contact acts on nodes, and what comes
  * through between them is stopped by the wall itself. */
 #include "obstacle.h"
+#include "tables.h"
 
 enum { STEPS = 100 };
 static const double fall = 3.0, fall_dt = 1.5e-3;
@@ -139,7 +140,7 @@ END_TEST
 void add_obstacle_corners(Suite *suite) {
   TCase *corners = tcase_create("corners"), *falls = tcase_create("corners that fall");
   tcase_add_loop_test(falls, sharp, 0, BROAD);
-  tcase_add_loop_test(corners, stops, 0, BROAD);
+  add_sparse(corners, stops, BROAD, 5);
   tcase_add_loop_test(corners, driven, 0, 2);
   tcase_set_tags(falls, "long");
   tcase_set_timeout(corners, 60);

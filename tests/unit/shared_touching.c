@@ -2,7 +2,8 @@
 #include "implicit.h"
 #include "shared.h"
 
-enum { SCENES = 60, MOST_OBSTACLES = 2 };
+/* The scene LONGEST takes as long as all others: 3900 linear iterations of five parts. */
+enum { SCENES = 60, LONGEST = 55, MOST_OBSTACLES = 2 };
 
 static const int32_t cells_of[] = {0, 200, 44, 13};
 
@@ -425,7 +426,8 @@ void add_shared_touching(Suite *suite) {
   tcase_set_timeout(all, 240);
   TCase *wide = wide_case(suite, "more touching");
   tcase_add_loop_test(wide, bodies_touch, 0, 5);
-  add_part(all, wide, bodies_touch, 5, SCENES, 10);
+  add_part(all, wide, bodies_touch, 5, LONGEST, 10);
+  tcase_add_loop_test(wide, bodies_touch, LONGEST, SCENES);
   tcase_add_loop_test(all, strips_are_squeezed, 0, 2);
   tcase_add_loop_test(all, light_touches_slide, 0, 2);
   tcase_add_loop_test(all, bodies_meet_where_parts_do, 0, 3);

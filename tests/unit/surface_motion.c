@@ -1,5 +1,6 @@
 /* Surfaces: how markers move and stretch, and where they go at the faces of the grid. */
 #include "surfaces.h"
+#include "tables.h"
 
 static const double rates[3][3] = {{0.4, -0.3, 0.1}, {0.5, -0.2, 0.3}, {-0.1, 0.2, 0.6}};
 static void linear(const double *x, double *v) {
@@ -331,11 +332,11 @@ void add_surface_motion(Suite *suite) {
   tcase_add_loop_test(motion, power_of_pressure, 0, BROAD);
   tcase_add_loop_test(motion, linear_fields_are_exact, 0, BROAD);
   tcase_add_loop_test(motion, nanson_by_differences, 0, BROAD);
-  tcase_add_loop_test(motion, flight_across_a_seam, 0, BROAD);
+  add_sparse(motion, flight_across_a_seam, BROAD, 5);
   tcase_add_loop_test(motion, falls_with_its_particles, 0, BROAD);
   tcase_add_loop_test(motion, half_on_a_slip_wall, 0, BROAD);
   tcase_add_loop_test(motion, as_a_force_on_a_particle, 0, BROAD);
-  tcase_add_test(motion, ring_under_pressure);
+  add_sparse(motion, ring_under_pressure, 1, 2);
   tcase_add_test(motion, beyond_the_grid);
   tcase_set_timeout(motion, 60);
   suite_add_tcase(suite, motion);

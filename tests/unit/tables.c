@@ -1,5 +1,7 @@
 #include "tables.h"
 
+#include <stdlib.h>
+
 TCase *wide_case(Suite *suite, const char *name) {
   TCase *wide = tcase_create(name);
   tcase_set_tags(wide, "wide");
@@ -19,4 +21,9 @@ void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32
 
 void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count) {
   add_every(some, wide, test, count, 5);
+}
+
+void add_sparse(TCase *tests, const TTest *test, int32_t count, int32_t every) {
+  const int32_t step = getenv("MPM_SPARSE") ? every : 1;
+  for (int32_t i = step - 1; i < count; i += step) tcase_add_loop_test(tests, test, i, i + 1);
 }

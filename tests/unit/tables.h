@@ -12,5 +12,8 @@ TCase *wide_case(Suite *suite, const char *name);
 void add_part(TCase *some, TCase *wide, const TTest *test, int32_t first, int32_t end, int32_t every);
 void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every);
 void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count);
+/* Adds a table of tests; where MPM_SPARSE is set, as the gate does under a sanitizer, the last of every so
+ * many. */
+void add_sparse(TCase *tests, const TTest *test, int32_t count, int32_t every);
 
 #endif

@@ -3,6 +3,7 @@
 #include "linalg.h"
 
 #include "linalg/system.h"
+#include "tables.h"
 
 /* Every method, on systems large enough for threads. */
 typedef struct scene {
@@ -219,8 +220,8 @@ Suite *linalg_suite(void) {
   suite_add_tcase(suite, linalg_multigrid_case());
   TCase *all = tcase_create("all methods");
   tcase_set_timeout(all, 120);
-  tcase_add_loop_test(all, threads, 0, SCENES);
-  tcase_add_loop_test(all, executors, 0, SCENES);
+  add_sparse(all, threads, SCENES, 3);
+  add_sparse(all, executors, SCENES, 3);
   tcase_add_loop_test(all, out_of_memory, 0, 7);
   suite_add_tcase(suite, all);
   return suite;

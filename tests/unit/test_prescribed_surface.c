@@ -1,5 +1,6 @@
 /* Surfaces that prescribe how the material moves: what nodes and bodies do, and what it costs. */
 #include "prescribed_surfaces.h"
+#include "tables.h"
 
 /* ---- what all methods keep ----------------------------------------------------------------------------- */
 /* The impulse of the surface is the momentum that the block gains, beside that of gravity, and its work is
@@ -595,9 +596,9 @@ Suite *prescribed_surface_suite(void);
 Suite *prescribed_surface_suite(void) {
   Suite *suite = suite_create("prescribed_surface");
   TCase *kept = tcase_create("kept"), *nodes = tcase_create("nodes"), *other = tcase_create("other");
-  tcase_add_loop_test(kept, impulse_is_momentum, 0, BROAD);
+  add_sparse(kept, impulse_is_momentum, BROAD, 3);
   tcase_add_loop_test(kept, impulse_on_every_grid, 0, 4 * KINDS);
-  tcase_add_loop_test(kept, rigid_motion, 0, BROAD);
+  add_sparse(kept, rigid_motion, BROAD, 5);
   tcase_add_loop_test(kept, work_of_a_surface, 0, BROAD);
   tcase_set_timeout(kept, 60);
   suite_add_tcase(suite, kept);

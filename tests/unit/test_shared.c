@@ -1,6 +1,7 @@
 /* One problem in several parts has the bits that it has in one. Parts are threads here (parts.h), where
  * Check's macros may not be used: every part keeps what it has found, which is compared afterwards. */
 #include "shared.h"
+#include "tables.h"
 
 /* ---- combinations -------------------------------------------------------------------------------------- */
 mpm_status set_up_body(world *w, const scene *is) {
@@ -451,12 +452,12 @@ Suite *shared_suite(void) {
   suite_add_tcase(suite, all);
   TCase *host = tcase_create("host");
   tcase_set_timeout(host, 120);
-  tcase_add_loop_test(host, host_acts, 0, 24);
+  add_sparse(host, host_acts, 24, 5);
   tcase_add_test(host, particles_come_and_go);
   tcase_add_test(host, prescribed_later);
   tcase_add_loop_test(host, light_nodes_lead, 0, 24);
   tcase_add_test(host, few_blocks);
-  tcase_add_test(host, blocks_are_cut_anew);
+  add_sparse(host, blocks_are_cut_anew, 1, 2);
   suite_add_tcase(suite, host);
   suite_add_tcase(suite, shared_calls_case(suite));
   suite_add_tcase(suite, shared_balance_case());
