@@ -2012,7 +2012,7 @@ namespace Mpm {
     public static extern int mpm_surface_remove(IntPtr surface, long n, long* ids);
 
     /// <summary>Splits markers until no edge is longer than spacing &gt; 0: total area, its moment and the loads are
-    /// kept.</summary>
+    /// kept, but for the moment where a half would lie beyond a face of the grid: it is put onto the face.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_surface_refine(IntPtr surface, double spacing, long* added);
 

@@ -2524,7 +2524,8 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_surface_remove
 
-    !> Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept.
+    !> Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept, but for
+    !! the moment where a half would lie beyond a face of the grid: it is put onto the face.
     function mpm_surface_refine(surface, spacing, added) bind(c, name="mpm_surface_refine") result(answer)
       import
       type(c_ptr), value :: surface

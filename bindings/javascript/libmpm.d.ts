@@ -1856,9 +1856,10 @@ export class Surface implements Handle {
   /**
    * Returns how many markers came.
    *
-   * Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept.
-   * One half keeps the id, the other gets a new one. *added, which may be NULL, tells how many came.
-   * MPM_E_ARG: spacing is bad, or more than 2^28 markers would come of it. MPM_E_STATE during a staged step.
+   * Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept,
+   * but for the moment where a half would lie beyond a face of the grid: it is put onto the face. One half
+   * keeps the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG:
+   * spacing is bad, or more than 2^28 markers would come of it. MPM_E_STATE during a staged step.
    */
   refine(spacing: number): number;
   /**

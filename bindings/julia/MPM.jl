@@ -2389,9 +2389,10 @@ function mpm_surface_remove(surface, n, ids)
 end
 
 """
-Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept. One half keeps
-the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing is bad, or more
-than 2^28 markers would come of it. MPM_E_STATE during a staged step.
+Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept, but for the
+moment where a half would lie beyond a face of the grid: it is put onto the face. One half keeps the id, the other
+gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing is bad, or more than 2^28 markers
+would come of it. MPM_E_STATE during a staged step.
 """
 function mpm_surface_refine(surface, spacing, added)
     return ccall((:mpm_surface_refine, libmpm), Int32, (Ptr{mpm_surface}, Float64, Ptr{Int64}),

@@ -7,7 +7,7 @@ seeds=$build/fuzz/seeds/$target found=$build/fuzz/corpus/$target
 rm -rf "$seeds"
 mkdir -p "$found" "$seeds"
 tar -xzf "tests/fuzz/corpus/$target.tar.gz" -C "$seeds"
-limits="-rss_limit_mb=2048 -malloc_limit_mb=1024 -timeout=25 -max_len=384 -len_control=0 -artifact_prefix=$build/fuzz/$target-"
+limits="-rss_limit_mb=2048 -malloc_limit_mb=1024 -timeout=60 -max_len=384 -len_control=0 -artifact_prefix=$build/fuzz/$target-"
 export ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1
 quietly() { "$@" > "$build/fuzz/$target.log" 2>&1 || { tail -60 "$build/fuzz/$target.log"; echo "fuzz: $target: a finding"; exit 1; }; }
 # shellcheck disable=SC2086

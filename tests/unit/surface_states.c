@@ -47,6 +47,37 @@ START_TEST(splitting_keeps_area_and_moment) {
 }
 END_TEST
 
+/* Halves of a marker whose edge reaches beyond a face are put back onto it, with all of the area. */
+START_TEST(halves_stay_in_the_grid) {
+  for (int32_t dim = 2; dim <= 3; ++dim) {
+    world w;
+    open_block(&w, &methods[0], dim);
+    const mpm_grid_desc *grid = &w.desc.grid;
+    mpm_surface *s = put_surface(&w, NULL);
+    const double low = grid->origin[0], high = low + (double)grid->cells[0] * grid->spacing[0],
+                 beside = 0.1 * grid->spacing[0];
+    const double x[] = {low + beside, high - beside, 1.1, 1.1, 1.2, 1.2}, area[] = {0, 0, 1, 1, 0, 0};
+    int64_t added = 0;
+    ck_ok(&w, mpm_surface_add(s, 2, x, area, NULL));
+    ck_ok(&w, mpm_surface_refine(s, 0.3, &added));
+    ck_assert_int_ge(added, 2);
+    const int64_t n = mpm_surface_count(s);
+    double *at = markers(s, "position", dim), *A = markers(s, "reference_area", 1), sum = 0.0;
+    int32_t on_faces = 0;
+    for (int64_t i = 0; i < n; ++i) {
+      ck_assert(at[i] >= low && at[i] <= high);
+      on_faces |= at[i] <= low ? 1 : at[i] >= high ? 2 : 0;
+      sum += A[i];
+    }
+    ck_assert_int_eq(on_faces, 3);
+    ck_within("area", sum, 2.0, 1e-12);
+    free(at), free(A);
+    drop_surface(&w, s);
+    world_close(&w);
+  }
+}
+END_TEST
+
 /* With max_spacing markers are split as the material stretches. */
 START_TEST(stretched_markers_are_split) {
   for (int32_t dim = 2; dim <= 3; ++dim) {
@@ -366,6 +397,7 @@ END_TEST
 void add_surface_states(Suite *suite) {
   TCase *other = tcase_create("other");
   tcase_add_test(other, splitting_keeps_area_and_moment);
+  tcase_add_test(other, halves_stay_in_the_grid);
   tcase_add_test(other, stretched_markers_are_split);
   tcase_add_test(other, one_of_two_bodies);
   tcase_add_test(other, failures_leave_no_trace);

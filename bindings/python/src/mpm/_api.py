@@ -2101,9 +2101,10 @@ Removes the n markers with the given ids: all or none. MPM_E_NOT_FOUND: an id is
 is given twice. MPM_E_STATE during a staged step.""",
     "mpm_surface_refine": """mpm_status mpm_surface_refine(mpm_surface *surface, double spacing, int64_t *added)
 
-Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept. One half keeps
-the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing is bad, or more
-than 2^28 markers would come of it. MPM_E_STATE during a staged step.""",
+Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept, but for the
+moment where a half would lie beyond a face of the grid: it is put onto the face. One half keeps the id, the other
+gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing is bad, or more than 2^28 markers
+would come of it. MPM_E_STATE during a staged step.""",
     "mpm_surface_count": """int64_t mpm_surface_count(const mpm_surface *surface)
 
 The number of markers; 0 for NULL.""",

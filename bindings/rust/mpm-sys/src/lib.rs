@@ -3024,9 +3024,10 @@ extern "C" {
     /// id is given twice. MPM_E_STATE during a staged step.
     pub fn mpm_surface_remove(surface: *mut mpm_surface, n: i64, ids: *const i64) -> mpm_status;
 
-    /// Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept. One half
-    /// keeps the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing is bad,
-    /// or more than 2^28 markers would come of it. MPM_E_STATE during a staged step.
+    /// Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept, but for
+    /// the moment where a half would lie beyond a face of the grid: it is put onto the face. One half keeps the id, the
+    /// other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing is bad, or more than 2^28
+    /// markers would come of it. MPM_E_STATE during a staged step.
     pub fn mpm_surface_refine(
         surface: *mut mpm_surface,
         spacing: f64,
