@@ -26,7 +26,7 @@
  * - position: a length, inside the grid; with total_lagrangian = 1 anywhere, and not wrapped.
  * - velocity: length/time.
  * - acceleration: (v_new - v_old) / dt of the last step, once the host has set or mapped it; with staggered
- *   velocities over the mean of its dt and the one before.
+ *   velocities over the mean of its dt and the one before. With MPM_NEWMARK the one at the end of the step.
  * - mass, initial_volume: > 0; a new particle has mass = density * initial_volume. Of MPM_AXISYMMETRIC the
  *   volume is that of one radian, the area in the plane times the radius; fills take care of that.
  * - volume: det F * initial_volume (MPoint theory, eq. 40).

@@ -86,6 +86,7 @@ static int32_t stop_at_wall(mpmi_batch *b, int64_t slot, int32_t k, double *x) {
   stops->impulse[2 * k + above] -= momentum;
   stops->energy += 0.5 * momentum * *v;
   *v = 0.0;
+  if (mpmi_is_implicit(settings)) mpmi_component_row(b->set, MPMI_ACCELERATION, 1, k)[slot] = 0.0;
   return 1;
 }
 

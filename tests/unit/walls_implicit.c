@@ -10,25 +10,33 @@ static mpm_status draw(void *user, const mpm_node_batch *b, uint8_t *prescribed,
   return MPM_OK;
 }
 
-/* A bar whose end nodes the host draws beyond a friction wall: its plane stops particles. In equilibrium
- * that takes no momentum, however long the step is, and forces are those of who holds the bar. */
+/* A bar whose end nodes the host draws beyond a friction wall, the plane of which stops particles. */
+static int64_t draw_bar(world *w, int32_t quasi_static, double dt) {
+  world_desc d = world_default(2, 10, 1.0);
+  d.grid.basis = MPM_LINEAR;
+  d.stepper.scheme = MPM_NEWMARK;
+  d.stepper.quasi_static = quasi_static;
+  d.law = (world_law){.model = "linear_elastic", .E = 1e4, .nu = 0.0, .density = 1.0};
+  mpm_particles *set = world_open(w, &d);
+  const double low[2] = {0.0, 3.0}, high[2] = {10.0, 6.0};
+  static double speed;
+  speed = 0.3 / dt;
+  const int64_t n = world_fill(w, set, low, high, 2);
+  ck_ok(w, mpm_stepper_set_wall(w->stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
+  ck_ok(w, mpm_stepper_set_wall(w->stepper, MPM_X_MAX, MPM_WALL_FRICTION, 0.3));
+  ck_ok(w, mpm_stepper_set_velocity_bc(w->stepper, draw, &speed));
+  world_step(w, dt);
+  return n;
+}
+
+/* In equilibrium that takes no momentum, however long the step is, and forces are those of who holds the bar. */
 START_TEST(stopped_without_momentum) {
   static const double dts[] = {1e-3, 1.0};
   for (int32_t i = 0; i < 2; ++i) {
     world w;
-    world_desc d = world_default(2, 10, 1.0);
-    d.grid.basis = MPM_LINEAR;
-    d.stepper.scheme = MPM_NEWMARK;
-    d.stepper.quasi_static = 1;
-    d.law = (world_law){.model = "linear_elastic", .E = 1e4, .nu = 0.0, .density = 1.0};
-    mpm_particles *set = world_open(&w, &d);
-    const double low[2] = {0.0, 3.0}, high[2] = {10.0, 6.0};
-    double speed = 0.3 / dts[i], met[2], held[2];
-    const int64_t n = world_fill(&w, set, low, high, 2);
-    ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
-    ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MAX, MPM_WALL_FRICTION, 0.3));
-    ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, draw, &speed));
-    world_step(&w, dts[i]);
+    double met[2], held[2];
+    const int64_t n = draw_bar(&w, 1, dts[i]);
+    mpm_particles *set = w.set[0];
     double *x = fetch(&w, set, "position", 2);
     int64_t stopped = 0;
     for (int64_t p = 0; p < n; ++p) stopped += x[p] >= 10.0;
@@ -41,6 +49,26 @@ START_TEST(stopped_without_momentum) {
     free(x);
     world_close(&w);
   }
+}
+END_TEST
+
+/* What is stopped begins at rest: by its old acceleration Newmark's rule would drive it on into the wall. */
+START_TEST(stopped_without_acceleration) {
+  world w;
+  const int64_t n = draw_bar(&w, 0, 1e-2);
+  double *x = fetch(&w, w.set[0], "position", 2), *v = fetch(&w, w.set[0], "velocity", 2),
+         *a = fetch(&w, w.set[0], "acceleration", 2);
+  int64_t stopped = 0, driven = 0;
+  for (int64_t p = 0; p < n; ++p) {
+    const int32_t on_wall = x[p] >= 10.0;
+    stopped += on_wall;
+    driven += !on_wall && a[p] > 0.0;
+    ck_holds(!on_wall || (v[p] == 0.0 && a[p] == 0.0));
+  }
+  ck_assert_int_eq(stopped, 6);
+  ck_assert_int_gt(driven, 0);
+  free(x), free(v), free(a);
+  world_close(&w);
 }
 END_TEST
 
@@ -98,6 +126,7 @@ TCase *walls_implicit_case(void) {
   TCase *tc = tcase_create("implicit");
   tcase_set_timeout(tc, 30.0);
   tcase_add_test(tc, stopped_without_momentum);
+  tcase_add_test(tc, stopped_without_acceleration);
   tcase_add_loop_test(tc, led_along_a_wall, 0, 2);
   return tc;
 }
