@@ -83,7 +83,8 @@ START_TEST(descriptions) {
   ck_refused(context, umat_elastic_, &good, MPM_E_ARG, "props[1] = inf");
   /* the modulus of a UMAT that gives none, that has an infinite one, that asks for less, that leaves */
   props[1] = nu;
-  ck_refused(context, dead_umat, &good, MPM_E_ARG, "on the diagonal is 0: give wave_modulus");
+  ck_refused(context, dead_umat, &good, MPM_E_ARG,
+             "the largest modulus of an unstressed particle is 0: give wave_modulus");
   props[1] = 0.5;
   ck_refused(context, umat_elastic_, &good, MPM_E_ARG, "give wave_modulus");
   props[1] = nu;
@@ -321,9 +322,121 @@ START_TEST(modulus_exceeded) {
 }
 END_TEST
 
-/* A subroutine must not make materials: it holds what serial calls wait for. */
+/* ---- what subroutines do themselves ------------------------------------------------------------------- */
 static mpm_context *elsewhere;
 static mpm_status inside;
+
+/* Fibres of ten times the stiffness, along a direction that is none of the axes and between none of them. */
+static const double fibre[3] = {2.0, 3.0, 1.0}, stiff = 10.0;
+static void fibres(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd,
+                   double *rpl, double *ddsddt, double *drplde, double *drpldt, const double *stran,
+                   const double *dstran, const double *time, const double *dtime, const double *temp,
+                   const double *dtemp, const double *predef, const double *dpred, const char *cmname,
+                   const int *ndi, const int *nshr, const int *ntens, const int *nstatv, const double *props,
+                   const int *nprops, const double *coords, const double *drot, double *pnewdt,
+                   const double *celent, const double *dfgrd0, const double *dfgrd1, const int *noel,
+                   const int *npt, const int *layer, const int *kspt, const int *jstep, const int *kinc,
+                   size_t cmname_length) {
+  umat_elastic_(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time,
+                dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, coords,
+                drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc, cmname_length);
+  static const int at[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      ddsdde[i + 6 * j] +=
+          stiff * E * fibre[at[i][0]] * fibre[at[i][1]] * fibre[at[j][0]] * fibre[at[j][1]] / (14.0 * 14.0);
+}
+
+/* The bound of the step is that of the stiffest direction. */
+START_TEST(modulus_of_fibres) {
+  mpm_context *context = context_of(1);
+  const double props[2] = {E, nu}, isotropic = E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+  mpm_umat_desc d = umat_desc(density, 2, props, 0);
+  mpm_material *material;
+  ck_ok(context, mpm_umat_material(context, fibres, &d, &material));
+  point p = point_of(material, 1);
+  step(context, &p, (const double[9]){1, 0, 0, 0, 1, 0, 0, 0, 1});
+  const double wanted = sqrt((isotropic + stiff * E) / density);
+  ck_near(p.wave_speed, wanted, 1e-6 * wanted);
+  ck_ok(context, mpm_material_destroy(material));
+  ck_ok(context, mpm_context_destroy(context));
+}
+END_TEST
+
+/* NaN anywhere on the diagonal is no modulus. */
+static void lost(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd,
+                 double *rpl, double *ddsddt, double *drplde, double *drpldt, const double *stran,
+                 const double *dstran, const double *time, const double *dtime, const double *temp,
+                 const double *dtemp, const double *predef, const double *dpred, const char *cmname,
+                 const int *ndi, const int *nshr, const int *ntens, const int *nstatv, const double *props,
+                 const int *nprops, const double *coords, const double *drot, double *pnewdt,
+                 const double *celent, const double *dfgrd0, const double *dfgrd1, const int *noel,
+                 const int *npt, const int *layer, const int *kspt, const int *jstep, const int *kinc,
+                 size_t cmname_length) {
+  umat_elastic_(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time,
+                dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, coords,
+                drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc, cmname_length);
+  ddsdde[28] = (double)NAN;
+}
+
+START_TEST(modulus_is_a_number) {
+  mpm_context *context = context_of(1);
+  const double props[2] = {E, nu};
+  mpm_umat_desc d = umat_desc(density, 2, props, 0);
+  ck_refused(context, lost, &d, MPM_E_ARG, "nan: give wave_modulus");
+  ck_ok(context, mpm_context_destroy(context));
+}
+END_TEST
+
+/* Calls on another context, with a UMAT too, are the subroutine's to make; it may leave by XIT after them. */
+static point nested;
+static int32_t leaves;
+static void caller(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd,
+                   double *rpl, double *ddsddt, double *drplde, double *drpldt, const double *stran,
+                   const double *dstran, const double *time, const double *dtime, const double *temp,
+                   const double *dtemp, const double *predef, const double *dpred, const char *cmname,
+                   const int *ndi, const int *nshr, const int *ntens, const int *nstatv, const double *props,
+                   const int *nprops, const double *coords, const double *drot, double *pnewdt,
+                   const double *celent, const double *dfgrd0, const double *dfgrd1, const int *noel,
+                   const int *npt, const int *layer, const int *kspt, const int *jstep, const int *kinc,
+                   size_t cmname_length) {
+  umat_elastic_(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time,
+                dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, coords,
+                drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc, cmname_length);
+  if (nested.material)
+    inside = try_step(elsewhere, &nested, (const double[9]){1.01, 0, 0, 0, 1, 0, 0, 0, 1}, 0);
+  if (nested.material && leaves) mpm_umat_exit();
+}
+
+START_TEST(calls_within_calls) {
+  const double props[2] = {E, nu};
+  mpm_umat_desc d = umat_desc(density, 2, props, 0);
+  mpm_context *context = context_of(1);
+  mpm_material *outer, *inner;
+  d.serial = _i / 2;
+  leaves = _i % 2;
+  elsewhere = context_of(1);
+  ck_ok(elsewhere, mpm_umat_material(elsewhere, umat_elastic_, &d, &inner));
+  ck_ok(context, mpm_umat_material(context, caller, &d, &outer));
+  nested = point_of(inner, 1);
+  point p = point_of(outer, 1);
+  inside = MPM_E_INTERNAL;
+  const mpm_status status = try_step(context, &p, (const double[9]){1.02, 0, 0, 0, 1, 0, 0, 0, 1}, 0);
+  ck_assert_int_eq(inside, MPM_OK);
+  if (leaves)
+    ck_assert_int_eq(status, MPM_E_CALLBACK);
+  else
+    ck_ok(context, status);
+  ck_near(nested.stress[0], 1.34615e7 * log(1.01), 1.0);
+  nested.material = NULL;
+  ck_ok(context, mpm_material_destroy(outer));
+  ck_ok(elsewhere, mpm_material_destroy(inner));
+  ck_ok(context, mpm_context_destroy(context));
+  ck_ok(elsewhere, mpm_context_destroy(elsewhere));
+}
+END_TEST
+
+/* A subroutine must not make materials: it holds what serial calls wait for. */
 static void maker(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd,
                   double *rpl, double *ddsddt, double *drplde, double *drpldt, const double *stran,
                   const double *dstran, const double *time, const double *dtime, const double *temp,
@@ -366,6 +479,9 @@ TCase *failures_case(void) {
   tcase_add_test(tcase, sick_stiffness);
   tcase_add_test(tcase, words_of_the_subroutine);
   tcase_add_test(tcase, modulus_exceeded);
+  tcase_add_test(tcase, modulus_of_fibres);
+  tcase_add_test(tcase, modulus_is_a_number);
+  tcase_add_loop_test(tcase, calls_within_calls, 0, 4);
   tcase_add_test(tcase, materials_of_subroutines);
   return tcase;
 }

@@ -179,7 +179,8 @@ START_TEST(blocks) {
 }
 END_TEST
 
-/* Six springs, of which one is the stiffest. */
+/* Six springs, of which one is the stiffest: of normal strain along that axis, of shear half-way between two,
+ * where a quarter of each of theirs comes to it. */
 static int stiffest;
 static void springs(const int *nblock, const int *ndir, const int *nshr, const int *nstatev,
                     const int *nfieldv, const int *nprops, const int *lanneal, const double *step_time,
@@ -216,7 +217,7 @@ START_TEST(largest_modulus) {
     b.F = b.F_inc = F, b.stress = b.stress_new = stress, b.state = b.state_new = state;
     b.wave_speed = &wave_speed;
     ck_ok(context, mpm_material_update(material, &b, NULL, NULL));
-    ck_near(wave_speed, sqrt(5e9 / density), 1e-9 * wave_speed);
+    ck_near(wave_speed, sqrt((stiffest < 3 ? 5e9 : 5.5e9) / density), 1e-9 * wave_speed);
     ck_ok(context, mpm_material_destroy(material));
   }
   ck_ok(context, mpm_context_destroy(context));

@@ -19,6 +19,9 @@ typedef struct inside {
   const mpmu_call *call;
 } inside;
 static _Thread_local inside *under_way;
+/* How many serial calls are under way on this thread: a subroutine, or who hears of it, may make calls on other
+ * contexts, with materials of subroutines as well. */
+static _Thread_local int serial_calls;
 
 int mpmu_is_inside(void) {
   return under_way != NULL;
@@ -39,23 +42,24 @@ void mpm_umat_message(const char *text) {
 /* Comes back in either way. */
 static mpm_status run(mpmu_call *call) {
   inside here;
+  inside *volatile const around = under_way;
   here.call = call;
   under_way = &here;
   if (setjmp(here.out)) {
-    under_way = NULL;
+    under_way = around;
     return MPM_UMAT_EXIT;
   }
   call->run(call->work);
-  under_way = NULL;
+  under_way = around;
   return MPM_OK;
 }
 
 mpm_status mpmu_enter(mpmu_call *call) {
   const int32_t serial = call->law->desc.serial;
-  if (serial) pthread_mutex_lock(&one_at_a_time);
+  if (serial && !serial_calls++) pthread_mutex_lock(&one_at_a_time);
   const mpm_status status = run(call);
   if (status) tell(call, "the subroutine has called XIT");
-  if (serial) pthread_mutex_unlock(&one_at_a_time);
+  if (serial && !--serial_calls) pthread_mutex_unlock(&one_at_a_time);
   return status;
 }
 

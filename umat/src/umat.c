@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "increment.h"
+#include "modulus.h"
 #include "subroutine.h"
 
 enum { PIECE = 16, DDSDDE = MPMU_SYM * MPMU_SYM };
@@ -15,6 +16,7 @@ static const int row_of[MPMU_SYM] = {0, 1, 2, 0, 1, 0}, column_of[MPMU_SYM] = {0
 /* What a particle brings and takes away, in the order of the UMAT. */
 typedef struct point {
   double stress[MPMU_SYM], stran[MPMU_SYM], dstran[MPMU_SYM];
+  double strain[MPMU_SYM]; /* at the end of the step */
   double drot[9], dfgrd0[9], dfgrd1[9], coords[3];
   double statev[MPMU_STATES], ddsdde[DDSDDE], pnewdt, J, steps;
   int64_t at; /* in the batch */
@@ -66,13 +68,14 @@ static void load(const mpmu_law *law, const mpm_material_batch *b, int64_t i, po
   write_columns(&in.F, p->dfgrd1);
   for (int32_t k = 0; k < 3; ++k) p->coords[k] = k < law->desc.dim ? b->position[k * b->ld + i] : 0.0;
   load_states(law, b, i, &of.R, p);
+  for (int k = 0; k < MPMU_SYM; ++k) p->strain[k] = p->stran[k] + p->dstran[k];
   memset(p->ddsdde, 0, sizeof p->ddsdde);
   p->J = mpmu_determinant(&in.F);
   p->at = i;
 }
 
 /* ---- the call ---------------------------------------------------------------------------------------- */
-/* The UMAT may write to what it is given: all arguments are copies. */
+/* The UMAT may write to what it is given of a point: these arguments are copies. */
 static void call_umat(const mpmu_law *law, double time, double dtime, int64_t id, point *p) {
   double sse = 0.0, spd = 0.0, scd = 0.0, rpl = 0.0, drpldt = 0.0, ddsddt[MPMU_SYM] = {0.0};
   double drplde[MPMU_SYM] = {0.0}, times[2] = {time, time}, predef = 0.0, dpred = 0.0, dtemp = 0.0;
@@ -116,23 +119,17 @@ static void load_piece(mpmu_law *law, const mpm_material_batch *b, int64_t *i, p
 }
 
 /* ---- after the call ---------------------------------------------------------------------------------- */
-static double largest_modulus(const double *ddsdde) {
-  double most = ddsdde[0];
-  for (int k = 1; k < MPMU_SYM; ++k)
-    if (ddsdde[7 * k] > most) most = ddsdde[7 * k];
-  return most;
-}
-
 /* The bound of the step is the host's word: it must not depend on what was called before a state was
  * saved. */
 static void watch_modulus(const piece *w, const point *p) {
   mpmu_law *law = w->law;
-  const double modulus = largest_modulus(p->ddsdde);
-  if (!law->desc.message || !(modulus > 1.000001 * law->desc.wave_modulus)) return;
+  if (!law->desc.message) return;
+  const double modulus = mpmu_largest_modulus(p->ddsdde);
+  if (!(modulus > 1.000001 * law->desc.wave_modulus)) return;
   if (atomic_flag_test_and_set(&law->told)) return;
   char text[192];
   snprintf(text, sizeof text,
-           "DDSDDE has %g on its diagonal, beyond wave_modulus = %g: explicit steps may be too long", modulus,
+           "DDSDDE has a modulus of %g, beyond wave_modulus = %g: explicit steps may be too long", modulus,
            law->desc.wave_modulus);
   law->desc.message(law->desc.message_user, w->batch->id[p->at], text);
 }
@@ -144,11 +141,7 @@ static void store(const piece *w, const point *p) {
   mpmu_store_sym(b->stress_new, b->ld, p->at, read_sym(p->stress, 1.0));
   for (int32_t k = 0; k < law->desc.nstatv; ++k) state[k * b->ld] = p->statev[k];
   state[mpmu_steps_of(law) * b->ld] = p->steps + 1.0;
-  if (law->desc.stran) {
-    double sum[MPMU_SYM];
-    for (int k = 0; k < MPMU_SYM; ++k) sum[k] = p->stran[k] + p->dstran[k];
-    mpmu_store_sym(state + mpmu_stran_of(law) * b->ld, b->ld, 0, read_sym(sum, 1.0));
-  }
+  if (law->desc.stran) mpmu_store_sym(state + mpmu_stran_of(law) * b->ld, b->ld, 0, read_sym(p->strain, 1.0));
   watch_modulus(w, p);
 }
 
@@ -219,7 +212,7 @@ static mpm_status ask_modulus(mpm_context *context, mpmu_law *law, const double 
   write_columns(&unit, p->dfgrd1);
   for (int32_t k = 0; initial && k < law->desc.nstatv; ++k) p->statev[k] = initial[k];
   const mpm_status status = run_piece(&w);
-  const double modulus = largest_modulus(p->ddsdde);
+  const double modulus = mpmu_largest_modulus(p->ddsdde);
   if (status)
     return mpmu_refuse(context, MPM_E_ARG,
                        "mpm_umat_material: the UMAT %s when it is asked for the modulus of an unstressed "
@@ -228,9 +221,7 @@ static mpm_status ask_modulus(mpm_context *context, mpmu_law *law, const double 
   if (!(modulus > 0.0 && isfinite(modulus)))
     return mpmu_refuse(
         context, MPM_E_ARG,
-        "mpm_umat_material: the largest DDSDDE of an unstressed particle on the diagonal is %g: "
-        "give wave_modulus",
-        modulus);
+        "mpm_umat_material: the largest modulus of an unstressed particle is %g: give wave_modulus", modulus);
   law->desc.wave_modulus = modulus;
   return MPM_OK;
 }

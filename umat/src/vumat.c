@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "increment.h"
+#include "modulus.h"
 #include "subroutine.h"
 
 enum { BLOCK = 32, GRADIENT = 9, SPIN = 3 };
@@ -97,11 +98,15 @@ static void preset(block *w) {
 static void call_vumat(void *work) {
   block *w = work;
   const mpmu_law *law = w->law;
-  int n = w->n, ndir = 3, nshr = SPIN, nstatev = law->desc.nstatv, nfieldv = 0, nprops = law->desc.nprops;
+  int block_of[4 + BLOCK] = {w->n, 1, 1, 1}, ndir = 3, nshr = SPIN, nstatev = law->desc.nstatv, nfieldv = 0,
+                   nprops = law->desc.nprops;
   int lanneal = 0;
   double step_time = w->time, total_time = w->time, dt = w->dt;
+  /* nblock alone, or what subroutines with jblock(*) read: then npt, layer, kspt and the numbers of elements */
+  for (int k = 0; k < w->n; ++k)
+    block_of[4 + k] = (int)((w->batch ? w->batch->id[w->at[k]] : 0) % INT32_MAX) + 1;
   w->call.particle = w->batch ? w->batch->id[w->at[0]] : -1;
-  law->vumat(&n, &ndir, &nshr, &nstatev, &nfieldv, &nprops, &lanneal, &step_time, &total_time, &dt,
+  law->vumat(block_of, &ndir, &nshr, &nstatev, &nfieldv, &nprops, &lanneal, &step_time, &total_time, &dt,
              law->cmname, w->coords, w->celent, law->props, w->density, w->strain_inc, w->spin,
              w->temperature, w->stretch_old, w->F_old, w->zeros, w->stress_old, w->state_old, w->zeros,
              w->zeros, w->temperature, w->stretch_new, w->F_new, w->zeros, w->stress_new, w->state_new,
@@ -166,11 +171,11 @@ static mpm_status ask_modulus(mpm_context *context, mpmu_law *law, const double 
     return mpmu_refuse(context, MPM_E_ARG,
                        "mpm_vumat_material: the VUMAT calls XPLB_EXIT when it is asked for the modulus of an "
                        "unstressed particle: give wave_modulus");
-  double modulus = w.stress_new[0] / probe;
-  for (int k = 1; k < N; ++k) {
-    const double other = w.stress_new[k * N + k] / probe;
-    if (!(other <= modulus)) modulus = other;
-  }
+  static const int of_umat[N] = {0, 1, 2, 3, 5, 4}; /* 12, 23, 13 are 12, 13, 23 */
+  double stiffness[N * N];
+  for (int k = 0; k < N; ++k)
+    for (int c = 0; c < N; ++c) stiffness[of_umat[c] + N * of_umat[k]] = w.stress_new[c * N + k] / probe;
+  const double modulus = mpmu_largest_modulus(stiffness);
   if (!(modulus > 0.0 && isfinite(modulus)))
     return mpmu_refuse(
         context, MPM_E_ARG,

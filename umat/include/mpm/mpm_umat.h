@@ -98,7 +98,7 @@ typedef struct mpm_umat_desc {
   const char *cmname;           /**< CMNAME, up to 80 characters, copied; NULL (default): blanks */
   /** The largest elastic modulus that the subroutine will have, for uniaxial strain: it bounds the step of
    * explicit schemes. 0 (default): that of the unstressed particle with its initial state, for which the
-   * subroutine is called when the material is made. */
+   * subroutine is called when the material is made, with DTIME = 1 and COORDS = 0. */
   double wave_modulus;
   double celent;      /**< CELENT or charLength: the spacing of the grid, say; 0 by default */
   double temperature; /**< TEMP, the same for all particles; 0 by default */
