@@ -146,7 +146,7 @@ static mpm_status check_output(mpm_mpi *m, const mpm_mpi_output *given, mpm_mpi_
   *out = (mpm_mpi_output){.struct_size = sizeof *out};
   if (!given) return MPM_OK;
   const uint32_t size = given->struct_size;
-  if (size < sizeof *out)
+  if (size < sizeof *out || size > 1 << 16)
     return mpmx_fail(m, MPM_E_ARG, "mpm_mpi_output: struct_size is %u, must be at least %zu", (unsigned)size,
                      sizeof *out);
   const unsigned char *byte = (const unsigned char *)given;
@@ -157,9 +157,11 @@ static mpm_status check_output(mpm_mpi *m, const mpm_mpi_output *given, mpm_mpi_
   *out = *given;
   if (out->writers < 0 || out->writers > m->parts)
     return mpmx_fail(m, MPM_E_ARG, "writers is %d, must be 0 to %d", (int)out->writers, (int)m->parts);
-  if (out->count < 0 || (out->count && !out->fields) || out->reserved)
-    return mpmx_fail(m, MPM_E_ARG, "count is %d, fields is %s, reserved is %d", (int)out->count,
-                     out->fields ? "set" : "NULL", (int)out->reserved);
+  if (out->count < 0 || (out->count && !out->fields))
+    return mpmx_fail(m, MPM_E_ARG, "count is %d, fields is %s", (int)out->count,
+                     out->fields ? "set" : "NULL");
+  if (out->reserved)
+    return mpmx_fail(m, MPM_E_UNSUPPORTED, "mpm_mpi_output: reserved is %d, must be 0", (int)out->reserved);
   for (int32_t i = 0; i < out->count; ++i)
     if (!out->fields[i]) return mpmx_fail(m, MPM_E_ARG, "fields[%d] is NULL", (int)i);
   return MPM_OK;

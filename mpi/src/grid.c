@@ -77,6 +77,35 @@ static mpm_status read_head(image *w, const mpm_mpi_output *as) {
   return MPM_OK;
 }
 
+/* The fields of all parts, in the order of the library, where the host names none: a part on which no bodies meet
+ * has kept none of contact, and one part would have them. */
+static mpm_status read_heads(image *w, const mpm_mpi_output *as) {
+  static const char *const name[] = {"index",        "mass",         "velocity",      "force",
+                                     "acceleration", "reaction",     "contact_force", "contact_normal",
+                                     "contact_gap",  "contact_area", "temperature"};
+  enum { NAMES = sizeof name / sizeof *name };
+  mpm_mpi *m = w->m;
+  mpm_status status = mpmx_agree(m, read_head(w, as));
+  if (status || as->count) return status;
+  uint64_t own = 0;
+  for (int32_t f = 0; f < w->fields; ++f)
+    for (int32_t k = 0; k < NAMES; ++k)
+      if (!strcmp(w->field[f].name, name[k])) own |= (uint64_t)1 << k;
+  uint64_t all = own;
+  status = mpmx_mpi(m, MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UINT64_T, MPI_BOR, m->comm), MPM_E_CALLBACK,
+                    "MPI_Allreduce");
+  if (status || all == own) return status;
+  const char *wanted[NAMES];
+  mpm_mpi_output named = *as;
+  named.fields = wanted;
+  for (int32_t k = 0; k < NAMES; ++k)
+    if (all >> k & 1) wanted[named.count++] = name[k];
+  mpmx_head_free(m, &w->head);
+  w->fields = 0;
+  w->record = 0;
+  return read_head(w, &named);
+}
+
 static mpm_status map(image *w, const char *name, mpm_view *view) {
   *view = (mpm_view){.struct_size = sizeof *view};
   return refused(w->m, "mpm_grid_map", mpm_grid_map(w->stepper, 0, name, MPM_READ, view));
@@ -417,7 +446,7 @@ static mpm_status write_index(image *w) {
 
 static mpm_status write_image(image *w, const mpm_mpi_output *as) {
   mpm_mpi *m = w->m;
-  mpm_status status = read_head(w, as);
+  mpm_status status = read_heads(w, as);
   status =
       mpmx_agree_on(m, status, status ? 0 : mpmx_head_hash(&w->head), MPM_E_UNSUPPORTED,
                     "the fields that the step has kept differ between the parts: name those that are to be "

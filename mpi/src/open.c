@@ -147,9 +147,10 @@ mpm_status mpm_mpi_open(MPI_Comm comm, mpm_context_desc *desc, mpm_mpi **out) {
 }
 
 mpm_status mpm_mpi_open_f(MPI_Fint comm, mpm_context_desc *desc, mpm_mpi **out) {
-  int started = 0;
+  int started = 0, ended = 0;
   MPI_Initialized(&started);
-  return mpm_mpi_open(started ? MPI_Comm_f2c(comm) : MPI_COMM_NULL, desc, out);
+  MPI_Finalized(&ended);
+  return mpm_mpi_open(started && !ended ? MPI_Comm_f2c(comm) : MPI_COMM_NULL, desc, out);
 }
 
 mpm_status mpm_mpi_close(mpm_mpi *m) {

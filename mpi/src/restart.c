@@ -78,6 +78,28 @@ static mpm_status in_rounds(mpm_mpi *m, MPI_File file, access_fn access, const c
   return failed;
 }
 
+/* Files that do not open go by the handler of MPI_FILE_NULL, which is the host's: it has its own again afterwards.
+ * ROMIO takes what stands before a colon for the name of a file system; "ufs:" is that of any. Collective. */
+static mpm_status open_file(mpm_mpi *m, const char *path, int mode, MPI_File *file) {
+  MPI_Errhandler of_host;
+  const int32_t known = MPI_File_get_errhandler(MPI_FILE_NULL, &of_host) == MPI_SUCCESS;
+  MPI_File_set_errhandler(MPI_FILE_NULL, MPI_ERRORS_RETURN);
+  int code = MPI_File_open(m->comm, path, mode, MPI_INFO_NULL, file);
+  mpm_status status = mpmx_agree(m, mpmx_mpi(m, code, MPM_E_IO, "MPI_File_open"));
+  if (status == MPM_E_IO && strchr(path, ':')) {
+    char plain[PATH_MAX + 8];
+    snprintf(plain, sizeof plain, "ufs:%s", path);
+    code = MPI_File_open(m->comm, plain, mode, MPI_INFO_NULL, file);
+    status = mpmx_agree(m, mpmx_mpi(m, code, MPM_E_IO, "MPI_File_open"));
+  }
+  if (known) {
+    MPI_File_set_errhandler(MPI_FILE_NULL, of_host);
+    MPI_Errhandler_free(&of_host);
+  }
+  if (!status) MPI_File_set_errhandler(*file, MPI_ERRORS_RETURN);
+  return status;
+}
+
 /* ---- saving */
 
 typedef struct saving {
@@ -152,10 +174,7 @@ static mpm_status write_pieces(saving *s) {
   MPI_File file;
   int64_t place = 0, whole = 0;
   lay_out(s, &place, &whole);
-  mpm_status status = mpmx_mpi(
-      m, MPI_File_open(m->comm, s->temporary, MPI_MODE_CREATE | MPI_MODE_WRONLY, MPI_INFO_NULL, &file),
-      MPM_E_IO, "MPI_File_open");
-  status = mpmx_agree(m, status);
+  mpm_status status = open_file(m, s->temporary, MPI_MODE_CREATE | MPI_MODE_WRONLY, &file);
   if (status) return status;
   /* one of that name may have been left behind, and be longer */
   status = mpmx_mpi(m, MPI_File_set_size(file, whole), MPM_E_IO, "MPI_File_set_size");
@@ -184,7 +203,11 @@ static void sync_folder(const char *path) {
 static mpm_status rename_file(saving *s) {
   struct stat old;
   if (!stat(s->target, &old)) chmod(s->temporary, old.st_mode & 07777);
-  if (rename(s->temporary, s->target)) return mpmx_file_error(s->m, "write", s->target, errno);
+  if (rename(s->temporary, s->target)) {
+    const mpm_status status = mpmx_file_error(s->m, "write", s->target, errno);
+    unlink(s->temporary);
+    return status;
+  }
   sync_folder(s->target);
   return MPM_OK;
 }
@@ -352,9 +375,7 @@ static mpm_status choose_pieces(loading *l) {
 static mpm_status read_pieces(loading *l, const char *path) {
   mpm_mpi *m = l->m;
   MPI_File file;
-  mpm_status status = mpmx_mpi(m, MPI_File_open(m->comm, path, MPI_MODE_RDONLY, MPI_INFO_NULL, &file),
-                               MPM_E_IO, "MPI_File_open");
-  status = mpmx_agree(m, status);
+  mpm_status status = open_file(m, path, MPI_MODE_RDONLY, &file);
   if (status) return status;
   status =
       in_rounds(m, file, MPI_File_read_at_all, "MPI_File_read_at_all", l->data, l->begin, l->end - l->begin);

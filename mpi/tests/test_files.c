@@ -296,6 +296,45 @@ static void test_grid(mpm_mpi *mpi) {
   destroy(&w);
 }
 
+/* A second body, which on the part of the first lies beside it and is nowhere else. */
+static mpm_particles *add_neighbour(world *w, int32_t lies) {
+  const int32_t per_cell[] = {2, 2};
+  mpm_particles *set;
+  mpm_contact_desc rule;
+  MUST(!mpm_contact_desc_init(&rule, sizeof rule));
+  MUST(!mpm_particles_create(w->context, w->grid, w->material, &set) && !mpm_stepper_add(w->stepper, set));
+  MUST(!mpm_stepper_set_body(w->stepper, set, 1) && !mpm_stepper_set_contact(w->stepper, 0, 1, &rule));
+  const double lower[] = {-0.3 + 0.1 * 6.0, 0.7 + 0.2 * 3.0}, upper[] = {-0.3 + 0.1 * 8.0, 0.7 + 0.2 * 5.0};
+  if (lies) MUST(!mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  return set;
+}
+
+/* Where bodies meet on one part only, the image has what contact keeps, as that of one part has. */
+static void test_meeting(mpm_mpi *mpi) {
+  world w = {0}, all = {0};
+  create(&w, 2, 0, rank, rank + 1);
+  mpm_particles *set = add_neighbour(&w, rank == 0);
+  steps(&w, 2);
+  if (!rank) {
+    create(&all, 2, 0, 0, size);
+    mpm_particles *other = add_neighbour(&all, 1);
+    steps(&all, 2);
+    MUST(!mpm_write_grid(all.stepper, in_folder("whole.vti"), 0, NULL));
+    vtk_text whole = vtk_load(in_folder("whole.vti"));
+    MUST(strstr(whole.bytes, "contact_force"));
+    vtk_drop(&whole);
+    MUST(!mpm_stepper_remove(all.stepper, other) && !mpm_particles_destroy(other));
+    destroy(&all);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  const mpm_mpi_output as = {.struct_size = sizeof as, .writers = size};
+  MUST(!mpm_mpi_write_grid(mpi, w.stepper, in_folder("nodes.pvti"), &as));
+  if (!rank) check_grid(in_folder("nodes.pvti"), in_folder("whole.vti"), size);
+  MPI_Barrier(MPI_COMM_WORLD);
+  MUST(!mpm_stepper_remove(w.stepper, set) && !mpm_particles_destroy(set));
+  destroy(&w);
+}
+
 /* ---- states */
 
 static struct {
@@ -574,6 +613,8 @@ static void test_refusals(mpm_mpi *mpi) {
     MUST(call(mpi, &w, which, which ? ".pvti" : ".pvtp", NULL) == MPM_E_ARG);
     as = (mpm_mpi_output){.struct_size = sizeof as - 1};
     last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "struct_size is 23, must be at least 24");
+    as.struct_size = 0xfffffff0u; /* nothing is read beyond it */
+    last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "struct_size is 4294967280");
     struct {
       mpm_mpi_output known;
       int64_t later;
@@ -593,7 +634,7 @@ static void test_refusals(mpm_mpi *mpi) {
     as.fields = hole;
     last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "fields[0] is NULL");
     as = (mpm_mpi_output){.struct_size = sizeof as, .reserved = 1};
-    last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "reserved is 1");
+    last_refuses(mpi, &w, which, path, &as, MPM_E_UNSUPPORTED, "reserved is 1");
     as = (mpm_mpi_output){.struct_size = sizeof as, .count = 1, .fields = unknown};
     MUST(call(mpi, &w, which, path, &as) == MPM_E_NOT_FOUND);
     MUST_SAY(mpm_mpi_last_error(mpi), "MPM_E_NOT_FOUND");
@@ -604,7 +645,21 @@ static void test_refusals(mpm_mpi *mpi) {
   }
   MUST(mpm_mpi_load(mpi, w.stepper, in_folder("nowhere")) == MPM_E_IO);
   MUST_SAY(mpm_mpi_last_error(mpi), "cannot read");
+  /* whatever the host has done about files that do not open; that stays as it was */
+  MPI_Errhandler handler;
+  MPI_File_set_errhandler(MPI_FILE_NULL, MPI_ERRORS_ARE_FATAL);
   MUST(mpm_mpi_save(mpi, w.stepper, in_folder("nowhere/a")) == MPM_E_IO);
+  MPI_File_get_errhandler(MPI_FILE_NULL, &handler);
+  MUST(handler == MPI_ERRORS_ARE_FATAL);
+  MPI_File_set_errhandler(MPI_FILE_NULL, MPI_ERRORS_RETURN);
+  /* what stands before a colon is the name of a file system to some */
+  MUST(!mpm_mpi_save(mpi, w.stepper, in_folder("run_12:30.state")));
+  MUST(exists(in_folder("run_12:30.state")) && !mpm_mpi_load(mpi, w.stepper, in_folder("run_12:30.state")));
+  /* a folder is not replaced, and nothing is left beside it */
+  MUST(mpm_mpi_save(mpi, w.stepper, folder) == MPM_E_IO);
+  char left[PATH];
+  snprintf(left, sizeof left, "%s.writing", folder);
+  MUST(!exists(left));
   /* in a staged step no state is saved, on any part */
   if (rank == size - 1) MUST(!mpm_step_begin(w.stepper, 1e-3));
   last_refuses(mpi, &w, SAVE, in_folder("all.state"), NULL, MPM_E_STATE, "mpm_state_size: MPM_E_STATE");
@@ -729,6 +784,7 @@ int main(int argc, char **argv) {
   mpm_mpi *mpi = open_world();
   test_particles(mpi);
   test_grid(mpi);
+  test_meeting(mpi);
   test_state(mpi);
   test_damage(mpi);
   test_forged(mpi);
