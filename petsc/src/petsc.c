@@ -245,6 +245,9 @@ static PetscErrorCode make_solver(mpm_petsc *m, int by_cg) {
   PetscCall(PCSetType(pc, PCGAMG));
   PetscCall(PCGAMGSetReuseInterpolation(pc, PETSC_TRUE)); /* while the pattern lasts */
   PetscCall(KSPSetFromOptions(m->ksp));
+  PetscBool applies_only;
+  PetscCall(PetscObjectTypeCompare((PetscObject)m->ksp, KSPPREONLY, &applies_only));
+  if (applies_only) PetscCall(KSPSetInitialGuessNonzero(m->ksp, PETSC_FALSE)); /* it refuses another one */
   m->by_cg = by_cg;
   PetscFunctionReturn(0);
 }
@@ -366,17 +369,23 @@ static mpm_status borrow(mpm_petsc *m, const mpm_operator *matrix, lent *l) {
   return MPM_OK;
 }
 
-/* The rows of all processes must be those of all parts. */
+/* The rows of all processes must be those of all parts, in their order. */
 static mpm_status check_parts(mpm_petsc *m, const mpm_operator_info *info) {
-  int64_t rows = info->owned_rows;
-  if (MPI_Allreduce(MPI_IN_PLACE, &rows, 1, MPI_INT64_T, MPI_SUM, m->comm))
+  int64_t rows = info->owned_rows, before = 0;
+  int rank = 0;
+  if (MPI_Comm_rank(m->comm, &rank) || MPI_Exscan(&rows, &before, 1, MPI_INT64_T, MPI_SUM, m->comm))
+    return fail(m, MPM_E_CALLBACK, "MPI_Exscan has failed");
+  int64_t word[] = {rows, (rank ? before : 0) != info->first_row};
+  if (MPI_Allreduce(MPI_IN_PLACE, word, 2, MPI_INT64_T, MPI_SUM, m->comm))
     return fail(m, MPM_E_CALLBACK, "MPI_Allreduce has failed");
-  if (rows == info->all_rows) return MPM_OK;
-  return fail(
-      m, MPM_E_ARG,
-      "processes of the communicator have %lld rows, parts of the context %lld: give the communicator of "
-      "the parts, or MPI_COMM_SELF for one part",
-      (long long)rows, (long long)info->all_rows);
+  if (word[0] != info->all_rows)
+    return fail(
+        m, MPM_E_ARG,
+        "processes of the communicator have %lld rows, parts of the context %lld: give the communicator of "
+        "the parts, or MPI_COMM_SELF for one part",
+        (long long)word[0], (long long)info->all_rows);
+  if (!word[1]) return MPM_OK;
+  return fail(m, MPM_E_ARG, "processes of the communicator are not in the order of the parts");
 }
 
 mpm_status mpm_petsc_solve(void *petsc, const mpm_operator *matrix, const double *rhs, double *solution,

@@ -237,7 +237,8 @@ static void fails(world *w, mpm_petsc *with, mpm_status wanted, int32_t returned
 
 static void check_faults(void) {
   world w;
-  mpm_petsc *poor, *odd, *alone;
+  mpm_petsc *poor, *odd, *alone, *turned, *direct;
+  MPI_Comm backwards;
   check_arguments();
   open_world(&w, "neo_hookean", 10, MPM_SOLVER_HOST, 0);
   lend_solver(&w, MPI_COMM_WORLD, NULL);
@@ -248,12 +249,23 @@ static void check_faults(void) {
   fails(&w, poor, MPM_CUT_DT, MPM_CUT_DT, "PETSc has not solved the system: DIVERGED_ITS after 2 iterations");
   for (int again = 0; again < 2; ++again) fails(&w, odd, MPM_E_CALLBACK, MPM_E_CALLBACK, "PETSc: PCSetType");
   if (size > 1) fails(&w, alone, MPM_E_CALLBACK, MPM_E_ARG, "give the communicator of the parts");
+  MPI_Comm_split(MPI_COMM_WORLD, 0, size - rank, &backwards);
+  MUST(!mpm_petsc_open(backwards, NULL, &turned));
+  if (size > 1) fails(&w, turned, MPM_E_CALLBACK, MPM_E_ARG, "are not in the order of the parts");
+  /* of PETSc's own factors there are only those of one process */
+  MUST(!PetscOptionsSetValue(NULL, "-direct_ksp_type", "preonly"));
+  MUST(!PetscOptionsSetValue(NULL, "-direct_pc_type", size == 1 ? "lu" : "redundant"));
+  MUST(!mpm_petsc_open(MPI_COMM_WORLD, "direct_", &direct));
+  OK(&w, mpm_stepper_set_linear_solver(w.stepper, mpm_petsc_solve, direct));
+  step(&w);
   MUST(!PetscOptionsClearValue(NULL, "-poor_ksp_max_it") && !PetscOptionsClearValue(NULL, "-odd_pc_type"));
   OK(&w, mpm_stepper_set_linear_solver(w.stepper, mpm_petsc_solve, w.solver));
   step(&w);
   OK(&w, mpm_stepper_set_linear_solver(w.stepper, mpm_petsc_solve, odd)); /* which is no longer odd */
   step(&w);
   MUST(!mpm_petsc_close(poor) && !mpm_petsc_close(odd) && !mpm_petsc_close(alone));
+  MUST(!mpm_petsc_close(turned) && !mpm_petsc_close(direct));
+  MPI_Comm_free(&backwards);
   close_world(&w);
 }
 
