@@ -34,6 +34,7 @@ const tell = (text) => {
 
 function write() {
   const { frame } = now;
+  if (!frame) return;
   const state = now.running ? '' : ' · paused';
   find('numbers').textContent =
     `t = ${frame.t.toFixed(3)} s · step ${frame.steps} · ${frame.count} particles · ` +
@@ -47,9 +48,17 @@ function run(on) {
   write();
 }
 
+/** Ends the way to a shared state: the visitor goes on from here. */
+function leave() {
+  if (!now.walking) return;
+  now.walking = false;
+  now.opened++;
+  tell('');
+}
+
 /** Begins a scene anew; for a link that names a number of steps, at the state after these. */
 async function open(name, wanted, link = {}) {
-  Object.assign(now, { name, wanted });
+  Object.assign(now, { name, wanted, walking: false });
   const mine = ++now.opened;
   for (const button of find('scenes').children) button.setAttribute('aria-pressed', button.value === name);
   find('wanted').value = Math.log(wanted);
@@ -61,6 +70,7 @@ async function open(name, wanted, link = {}) {
   now.running = !link.steps;
   write();
   if (!link.steps) return;
+  now.walking = true;
   while (now.frame.steps < link.steps) {
     tell(`On the way to step ${link.steps} …`);
     const next = await ask('steps', { count: link.steps - now.frame.steps, budget: SHARED_AT_ONCE });
@@ -70,6 +80,7 @@ async function open(name, wanted, link = {}) {
   }
   const { hash } = await ask('hash');
   if (mine !== now.opened) return;
+  now.walking = false;
   if (!link.hash) tell(`State ${hash} after ${link.steps} steps.`);
   else if (hash === link.hash)
     tell(`State ${hash} after ${link.steps} steps: the same bits as on the machine where the link was made.`);
@@ -86,7 +97,9 @@ const begin = (...values) => {
 
 async function share() {
   run(false);
+  const mine = now.opened;
   const { hash, steps, touched } = await ask('hash');
+  if (mine !== now.opened) return; // another scene has been begun meanwhile
   const link = new URLSearchParams({ scene: now.name, n: now.wanted });
   if (!touched) {
     link.set('steps', steps);
@@ -142,12 +155,17 @@ find('wanted').oninput = () => {
 };
 find('wanted').onchange = () => begin(now.name, slid());
 find('again').onclick = () => begin(now.name, now.wanted);
-find('pause').onclick = () => run(!now.running);
-find('step').onclick = async () => {
+find('pause').onclick = () => {
+  leave();
+  run(!now.running);
+};
+async function step() {
+  leave();
   run(false);
   now.frame = await ask('steps', { count: 1, budget: Infinity });
   write();
-};
+}
+find('step').onclick = () => step().catch((error) => tell(`Stopped: ${error.message}`));
 find('share').onclick = () => share().catch((error) => tell(error.message));
 addEventListener('hashchange', () => follow().catch((error) => tell(error.message)));
 
@@ -162,6 +180,8 @@ function hand(event, on) {
   }).catch((error) => tell(error.message));
 }
 canvas.onpointerdown = (event) => {
+  if (!now.frame || event.button) return;
+  leave();
   canvas.setPointerCapture(event.pointerId);
   hand(event, true);
 };
@@ -189,7 +209,7 @@ async function next() {
 }
 function tick(time) {
   draw();
-  if (!busy) next();
+  if (!busy && now.frame) next();
   if (time - seen.since > 500) {
     seen.rate = (1000 * (seen.frames - seen.at)) / (time - seen.since);
     seen.since = time;
@@ -204,8 +224,8 @@ try {
   paint = painter(canvas, C.MPM_SHAPE_BOX);
   const binary = new URLSearchParams(location.search).get('binary'); // of the package; by default what the browser can do
   await ask('open', { source: binary ? new URL(`./libmpm/${binary}`, import.meta.url).href : undefined });
-  await follow();
   requestAnimationFrame(tick);
+  await follow();
 } catch (error) {
   tell(error.message);
 }

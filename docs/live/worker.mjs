@@ -41,13 +41,18 @@ function run({ seconds = Infinity, steps = Infinity, budget = BUDGET }) {
   const start = performance.now();
   const goal = scene.t + seconds;
   let made = 0;
+  scene.spent *= 0.9; // here, so that a pause leaves the rate as it is
+  scene.made *= 0.9;
   while (scene.t < goal && made < steps && performance.now() - start < budget) {
     const info = advance(scene.stepper, 1);
     scene.t = info.t;
-    if (hand.on) follow(info.dt);
+    if (hand.on) {
+      follow(info.dt);
+      scene.touched = true;
+    }
+    scene.steps++; // counted here, so that steps before one that fails count
     made++;
   }
-  scene.steps += made;
   scene.spent += performance.now() - start;
   scene.made += made;
 }
@@ -61,8 +66,6 @@ function frame() {
     at += part.length;
   }
   const rate = scene.spent ? (scene.count * scene.made) / scene.spent / 1e3 : 0; // million particles a second
-  scene.spent *= 0.9;
-  scene.made *= 0.9;
   return {
     floats,
     obstacles: scene.obstacles.map((one) => one.pose()),
@@ -121,7 +124,6 @@ const answers = {
       Object.assign(hand, { x, y, on });
     }
     Object.assign(pointer, { x, y });
-    scene.touched ||= on;
     return {};
   },
   hash() {
