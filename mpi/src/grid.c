@@ -77,8 +77,8 @@ static mpm_status read_head(image *w, const mpm_mpi_output *as) {
   return MPM_OK;
 }
 
-/* The fields of all parts, in the order of the library, where the host names none: a part on which no bodies meet
- * has kept none of contact, and one part would have them. */
+/* The fields of all parts, in the order of the library, where the host names none: a part on which no
+ * bodies meet has kept none of contact, and one part would have them. */
 static mpm_status read_heads(image *w, const mpm_mpi_output *as) {
   static const char *const name[] = {"index",        "mass",         "velocity",      "force",
                                      "acceleration", "reaction",     "contact_force", "contact_normal",

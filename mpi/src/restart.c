@@ -78,8 +78,9 @@ static mpm_status in_rounds(mpm_mpi *m, MPI_File file, access_fn access, const c
   return failed;
 }
 
-/* Files that do not open go by the handler of MPI_FILE_NULL, which is the host's: it has its own again afterwards.
- * ROMIO takes what stands before a colon for the name of a file system; "ufs:" is that of any. Collective. */
+/* Files that do not open go by the handler of MPI_FILE_NULL, which is the host's: it has its own again
+ * afterwards. ROMIO takes what stands before a colon for the name of a file system; "ufs:" is that of any.
+ * Collective. */
 static mpm_status open_file(mpm_mpi *m, const char *path, int mode, MPI_File *file) {
   MPI_Errhandler of_host;
   const int32_t known = MPI_File_get_errhandler(MPI_FILE_NULL, &of_host) == MPI_SUCCESS;

@@ -29,7 +29,8 @@ static int64_t draw_bar(world *w, int32_t quasi_static, double dt) {
   return n;
 }
 
-/* In equilibrium that takes no momentum, however long the step is, and forces are those of who holds the bar. */
+/* In equilibrium that takes no momentum, however long the step is, and forces are those of who holds the
+ * bar. */
 START_TEST(stopped_without_momentum) {
   static const double dts[] = {1e-3, 1.0};
   for (int32_t i = 0; i < 2; ++i) {

@@ -31,9 +31,9 @@ static double follow(const double *ddsdde, double *n) {
   return twice;
 }
 
-/* From the axes, the diagonals of the faces and those of a cube power iterations climb to the largest value of a
- * form of fourth degree (Kofidis & Regalia 2002, On the best rank-1 approximation of higher-order supersymmetric
- * tensors). */
+/* From the axes, the diagonals of the faces and those of a cube power iterations climb to the largest value
+ * of a form of fourth degree (Kofidis & Regalia 2002, On the best rank-1 approximation of higher-order
+ * supersymmetric tensors). */
 double mpmu_largest_modulus(const double *ddsdde) {
   enum { STARTS = 13, CLIMBS = 12 };
   static const double start[STARTS][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {1, -1, 0},

@@ -19,8 +19,8 @@ typedef struct inside {
   const mpmu_call *call;
 } inside;
 static _Thread_local inside *under_way;
-/* How many serial calls are under way on this thread: a subroutine, or who hears of it, may make calls on other
- * contexts, with materials of subroutines as well. */
+/* How many serial calls are under way on this thread: a subroutine, or who hears of it, may make calls on
+ * other contexts, with materials of subroutines as well. */
 static _Thread_local int serial_calls;
 
 int mpmu_is_inside(void) {

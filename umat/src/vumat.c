@@ -102,7 +102,7 @@ static void call_vumat(void *work) {
                    nprops = law->desc.nprops;
   int lanneal = 0;
   double step_time = w->time, total_time = w->time, dt = w->dt;
-  /* nblock alone, or what subroutines with jblock(*) read: then npt, layer, kspt and the numbers of elements */
+  /* nblock alone, or what subroutines with jblock(*) read: then npt, layer, kspt and numbers of elements */
   for (int k = 0; k < w->n; ++k)
     block_of[4 + k] = (int)((w->batch ? w->batch->id[w->at[k]] : 0) % INT32_MAX) + 1;
   w->call.particle = w->batch ? w->batch->id[w->at[0]] : -1;

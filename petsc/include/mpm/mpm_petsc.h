@@ -6,8 +6,8 @@
  *
  * The method is algebraic multigrid by smoothed aggregation (GAMG), which is told the rigid motions of a
  * body, as the preconditioner of conjugate gradients, or of GMRES where the matrix is not symmetric and
- * positive definite. Options of PETSc choose others that measure the residual itself, and direct ones (preonly);
- * each solver has a prefix for them. The tolerance is the stepper's.
+ * positive definite. Options of PETSc choose others that measure the residual itself, and direct ones
+ * (preonly); each solver has a prefix for them. The tolerance is the stepper's.
  *
  * It takes PETSc 3.17 or later. The host starts PETSc, by PetscInitialize(), and ends it. The contract of
  * mpm.h (status, structs, threads) holds here too. Calls marked (collective) are made on all processes of
@@ -59,8 +59,8 @@ typedef struct mpm_petsc mpm_petsc;
 MPM_PETSC_API mpm_status mpm_petsc_open(MPI_Comm comm, const char *prefix, mpm_petsc **out);
 
 /** Frees the solver (collective), before PetscFinalize(), when no stepper calls it any more. NULL is fine.
- * MPM_E_STATE: PETSc has ended: the handle is freed all the same, and the memory of PETSc's matrix and solver is
- * lost. MPM_E_CALLBACK: MPI or PETSc has failed. */
+ * MPM_E_STATE: PETSc has ended: the handle is freed all the same, and the memory of PETSc's matrix and
+ * solver is lost. MPM_E_CALLBACK: MPI or PETSc has failed. */
 MPM_PETSC_API mpm_status mpm_petsc_close(mpm_petsc *petsc);
 
 /**
