@@ -164,10 +164,10 @@ MPM_API mpm_status mpm_surface_add_triangles(mpm_surface *surface, int64_t n, co
  * MPM_E_ARG: an id is given twice. MPM_E_STATE during a staged step. */
 MPM_API mpm_status mpm_surface_remove(mpm_surface *surface, int64_t n, const int64_t *ids);
 
-/** Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept, but
- * for the moment where a half would lie beyond a face of the grid: it is put onto the face. One half keeps the
- * id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing is bad, or
- * more than 2^28 markers would come of it. MPM_E_STATE during a staged step. */
+/** Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept,
+ * but for the moment where a half would lie beyond a face of the grid: it is put onto the face. One half
+ * keeps the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing
+ * is bad, or more than 2^28 markers would come of it. MPM_E_STATE during a staged step. */
 MPM_API mpm_status mpm_surface_refine(mpm_surface *surface, double spacing, int64_t *added);
 
 /** The number of markers; 0 for NULL. */
