@@ -147,8 +147,12 @@ static mpm_status check_output(mpm_mpi *m, const mpm_mpi_output *given, mpm_mpi_
   if (!given) return MPM_OK;
   const uint32_t size = given->struct_size;
   if (size < sizeof *out || size > 1 << 16)
-    return mpmx_fail(m, MPM_E_ARG, "mpm_mpi_output: struct_size is %u, must be at least %zu", (unsigned)size,
-                     sizeof *out);
+    return mpmx_fail(
+        m, MPM_E_ARG,
+        size < sizeof *out
+            ? "mpm_mpi_output: struct_size is %u, must be at least %zu"
+            : "mpm_mpi_output: struct_size is %u, more than any version has, which of this one is %zu",
+        (unsigned)size, sizeof *out);
   const unsigned char *byte = (const unsigned char *)given;
   for (uint32_t i = sizeof *out; i < size; ++i)
     if (byte[i])

@@ -18,17 +18,17 @@ static double follow(const double *ddsdde, double *n) {
   const double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
   const double strain[MPMU_SYM] = {n[0] * n[0],       n[1] * n[1],       n[2] * n[2],
                                    2.0 * n[0] * n[1], 2.0 * n[0] * n[2], 2.0 * n[1] * n[2]};
-  double s[MPMU_SYM], twice = 0.0;
+  double s[MPMU_SYM], along = 0.0;
   for (int i = 0; i < MPMU_SYM; ++i) {
     s[i] = 0.0;
     for (int j = 0; j < MPMU_SYM; ++j) s[i] += ddsdde[i + MPMU_SYM * j] * strain[j] / square;
-    twice += s[i] * strain[i] / square;
+    along += s[i] * strain[i] / square;
   }
   const double to[3] = {s[0] * n[0] + s[3] * n[1] + s[4] * n[2], s[3] * n[0] + s[1] * n[1] + s[5] * n[2],
                         s[4] * n[0] + s[5] * n[1] + s[2] * n[2]};
   const double largest = fmax(fmax(fabs(to[0]), fabs(to[1])), fabs(to[2]));
   for (int k = 0; k < 3 && largest > 0.0; ++k) n[k] = to[k] / largest;
-  return twice;
+  return along;
 }
 
 /* From the axes, the diagonals of the faces and those of a cube power iterations climb to the largest value
