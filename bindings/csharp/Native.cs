@@ -747,7 +747,7 @@ namespace Mpm {
     public long rows;
     /// <summary>number of stored entries, all of them in owned rows.</summary>
     public long nonzeros;
-    /// <summary>a number that stays the same as long as the sparsity does, on all parts.</summary>
+    /// <summary>a hash of nodes, axes and columns, below 2^53, equal on all parts.</summary>
     public long pattern_id;
     /// <summary>distance from component c to c + 1 of position, in elements; &gt;= rows.</summary>
     public long ld;

@@ -558,7 +558,7 @@ module mpm
     integer(c_int64_t) :: rows
     !> number of stored entries, all of them in owned rows.
     integer(c_int64_t) :: nonzeros
-    !> a number that stays the same as long as the sparsity does, on all parts.
+    !> a hash of nodes, axes and columns, below 2^53, equal on all parts.
     integer(c_int64_t) :: pattern_id
     !> distance from component c to c + 1 of position, in elements; >= rows.
     integer(c_int64_t) :: ld

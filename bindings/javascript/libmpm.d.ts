@@ -667,6 +667,8 @@ export interface HeatDesc {
  * parts, part by part. Behind them stand rows that other parts own, those alone that columns of owned rows
  * name: they have number, node, component and position, and no entries of their own. Every vector has
  * owned_rows entries. With one part all rows are owned, and number[i] is i.
+ *
+ * What a solver has made of a pattern serves as long as pattern_id is the same, of another stepper too.
  */
 export interface OperatorInfo {
   /** number of rows of a node on which nothing is prescribed */
@@ -679,7 +681,7 @@ export interface OperatorInfo {
   rows: number;
   /** number of stored entries, all of them in owned rows */
   nonzeros: number;
-  /** a number that stays the same as long as the sparsity does, on all parts */
+  /** a hash of nodes, axes and columns, below 2^53, equal on all parts */
   pattern_id: number;
   /** distance from component c to c + 1 of position, in elements; >= rows */
   ld: number;
@@ -1255,6 +1257,8 @@ export type SolveFunction = (matrix: System, rhs: Float64Array, solution: Float6
  * parts, part by part. Behind them stand rows that other parts own, those alone that columns of owned rows
  * name: they have number, node, component and position, and no entries of their own. Every vector has
  * owned_rows entries. With one part all rows are owned, and number[i] is i.
+ *
+ * What a solver has made of a pattern serves as long as pattern_id is the same, of another stepper too.
  */
 export interface System extends OperatorInfo {
   /** [rows] number of the node of each row, as in mpm_step_info.node */

@@ -40,6 +40,8 @@ typedef mpm_status (*mpm_solve_fn)(void *user, const mpm_operator *matrix, const
  * parts, part by part. Behind them stand rows that other parts own, those alone that columns of owned rows
  * name: they have number, node, component and position, and no entries of their own. Every vector has
  * owned_rows entries. With one part all rows are owned, and number[i] is i.
+ *
+ * What a solver has made of a pattern serves as long as pattern_id is the same, of another stepper too.
  */
 typedef struct mpm_operator_info {
   uint32_t struct_size;      /**< sizeof(mpm_operator_info) of the caller */
@@ -48,7 +50,7 @@ typedef struct mpm_operator_info {
   int32_t positive_definite; /**< 1 if the matrix is expected to be positive definite, which is not checked */
   int64_t rows;              /**< number of local rows and of local columns */
   int64_t nonzeros;          /**< number of stored entries, all of them in owned rows */
-  int64_t pattern_id;        /**< a number that stays the same as long as the sparsity does, on all parts */
+  int64_t pattern_id;        /**< a hash of nodes, axes and columns, below 2^53, equal on all parts */
   int64_t ld;                /**< distance from component c to c + 1 of position, in elements; >= rows */
   const int64_t *node;       /**< [rows] number of the node of each row, as in mpm_step_info.node */
   const int32_t *component;  /**< [rows] axis of each row */

@@ -269,6 +269,23 @@ static void check_faults(void) {
   close_world(&w);
 }
 
+/* A solver that goes from one stepper to another has the structure that each needs. */
+static void serve_two(void) {
+  world small, large;
+  open_world(&small, "neo_hookean", 6, MPM_SOLVER_HOST, 0);
+  open_world(&large, "neo_hookean", 8, MPM_SOLVER_HOST, 0);
+  lend_solver(&small, MPI_COMM_WORLD, NULL);
+  OK(&large, mpm_stepper_set_linear_solver(large.stepper, mpm_petsc_solve, small.solver));
+  for (int k = 0; k < STEPS; ++k) {
+    MUST(step(&small).info.linear_solver == MPM_SOLVER_HOST);
+    const int64_t patterns = info_of(&small).patterns;
+    MUST(step(&large).info.linear_solver == MPM_SOLVER_HOST);
+    MUST(info_of(&small).patterns > patterns);
+  }
+  close_world(&large);
+  close_world(&small);
+}
+
 int main(int argc, char **argv) {
   mpm_petsc *early = NULL, *late = NULL;
   MPI_Init(&argc, &argv);
@@ -282,7 +299,7 @@ int main(int argc, char **argv) {
   else if (!strcmp(argv[1], "gradients") && argc == 3)
     compare_with_gradients(atoi(argv[2]));
   else if (!strcmp(argv[1], "faults"))
-    check_faults();
+    check_faults(), serve_two();
   else
     quit(__LINE__, "unknown arguments");
   MUST(!mpm_petsc_open(MPI_COMM_SELF, NULL, &late));

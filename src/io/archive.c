@@ -1,6 +1,6 @@
 #include "io/archive.h"
 #include "io/byte_order.h"
-#include "io/mix.h"
+#include "context/mix.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* The hash of a physical state is a sum over particles, so that neither their order nor the cut of the
  * work matters. */
 #include "context/transport.h"
-#include "io/mix.h"
+#include "context/mix.h"
 #include "particles/values.h"
 #include "stepper/stepper.h"
 
@@ -15,11 +15,6 @@ typedef struct hash_job {
   uint64_t sum[PIECES];
 } hash_job;
 
-static uint64_t absorb(uint64_t h, uint64_t word) {
-  h = (h ^ word) * MPMI_MIX_A;
-  return h ^ h >> 29;
-}
-
 static uint64_t bits(double x) {
   uint64_t word;
   memcpy(&word, &x, sizeof word);
@@ -29,7 +24,7 @@ static uint64_t bits(double x) {
 /* Fields are told apart by name, so that the order in which the host added its own does not matter. */
 static uint64_t seed_of(const char *name) {
   uint64_t h = MPMI_MIX_C;
-  for (; *name; ++name) h = absorb(h, (unsigned char)*name);
+  for (; *name; ++name) h = mpmi_absorb(h, (unsigned char)*name);
   return mpmi_avalanche(h);
 }
 
@@ -76,7 +71,7 @@ static void add_field(const hash_job *job, int32_t f, int64_t begin, int64_t n, 
   for (int32_t c = 0; c < field->components; ++c) {
     load_words(field, (const char *)field->data[0] + (size_t)(c * set->ld) * mpmi_type_size(field->type),
                begin, n, word);
-    for (int64_t i = 0; i < n; ++i) h[i] = absorb(h[i], word[i]);
+    for (int64_t i = 0; i < n; ++i) h[i] = mpmi_absorb(h[i], word[i]);
     if (always_counts(f)) continue;
     load_defaults(set, f, c, begin, n, absent);
     for (int64_t i = 0; i < n; ++i) differs[i] |= word[i] ^ absent[i];
@@ -98,7 +93,7 @@ static void hash_piece(void *data, int64_t k) {
       if (f != MPMI_ID && set->field[f].present) add_field(job, f, begin, n, total);
     for (int64_t i = 0; i < n; ++i)
       if (id[begin + i] >= 0)
-        sum += mpmi_avalanche(absorb(absorb(job->set_seed, (uint64_t)id[begin + i]), total[i]));
+        sum += mpmi_avalanche(mpmi_absorb(mpmi_absorb(job->set_seed, (uint64_t)id[begin + i]), total[i]));
   }
   job->sum[k] = sum;
 }
@@ -112,27 +107,29 @@ static mpm_status hash_set(const mpm_particles *set, int32_t number, uint64_t *h
   for (int32_t k = 0; k < PIECES; ++k) sum += job.sum[k];
   int64_t all[] = {(int64_t)sum, set->count};
   const mpm_status status = mpmi_reduce_parts(set->context, MPM_REDUCE_SUM, 2, all);
-  *hash = mpmi_avalanche(absorb(job.set_seed + (uint64_t)all[0], (uint64_t)all[1]));
+  *hash = mpmi_avalanche(mpmi_absorb(job.set_seed + (uint64_t)all[0], (uint64_t)all[1]));
   return status;
 }
 
 static uint64_t hash_pose(uint64_t h, const mpmi_pose *pose) {
-  for (int32_t k = 0; k < 3; ++k) h = absorb(absorb(h, bits(pose->centre[k])), bits(pose->velocity[k]));
-  for (int32_t k = 0; k < 3; ++k) h = absorb(h, bits(pose->spin[k]));
-  for (int32_t k = 0; k < 4; ++k) h = absorb(h, bits(pose->orientation[k]));
+  for (int32_t k = 0; k < 3; ++k)
+    h = mpmi_absorb(mpmi_absorb(h, bits(pose->centre[k])), bits(pose->velocity[k]));
+  for (int32_t k = 0; k < 3; ++k) h = mpmi_absorb(h, bits(pose->spin[k]));
+  for (int32_t k = 0; k < 4; ++k) h = mpmi_absorb(h, bits(pose->orientation[k]));
   return h;
 }
 
 /* Springs of surfaces that prescribe are a part of the state that others do not have. */
 static uint64_t hash_markers(uint64_t h, const mpmi_markers *markers, int32_t prescribes) {
-  h = absorb(h, (uint64_t)markers->count);
+  h = mpmi_absorb(h, (uint64_t)markers->count);
   for (int64_t i = 0; i < markers->count; ++i) {
     const mpmi_marker *m = &markers->at[i];
-    h = absorb(h, (uint64_t)m->id);
+    h = mpmi_absorb(h, (uint64_t)m->id);
     for (int32_t k = 0; k < 3; ++k)
-      h = absorb(absorb(absorb(h, bits(m->position[k])), bits(m->edge[0][k])), bits(m->edge[1][k]));
+      h = mpmi_absorb(mpmi_absorb(mpmi_absorb(h, bits(m->position[k])), bits(m->edge[0][k])),
+                      bits(m->edge[1][k]));
     for (int32_t k = 0; k < 3 && prescribes; ++k)
-      h = absorb(absorb(h, bits(m->gap[k])), bits(m->prescribed_velocity[k]));
+      h = mpmi_absorb(mpmi_absorb(h, bits(m->gap[k])), bits(m->prescribed_velocity[k]));
   }
   return h;
 }
@@ -140,8 +137,9 @@ static uint64_t hash_markers(uint64_t h, const mpmi_markers *markers, int32_t pr
 mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
   if (!hash) return mpmi_agree(stepper->context, mpmi_fail(stepper->context, MPM_E_ARG, "hash is NULL"));
-  uint64_t h = absorb(absorb(absorb(MPMI_MIX_A, bits(stepper->history.t)), (uint64_t)stepper->history.step),
-                      (uint64_t)stepper->layout.member_count);
+  uint64_t h = mpmi_absorb(
+      mpmi_absorb(mpmi_absorb(MPMI_MIX_A, bits(stepper->history.t)), (uint64_t)stepper->history.step),
+      (uint64_t)stepper->layout.member_count);
   for (int32_t m = 0; m < stepper->layout.member_count; ++m) {
     mpm_particles *set = stepper->layout.member[m].set;
     /* Volume and stress follow from F and may be out of date. The host must not see that, const or not. */
@@ -149,7 +147,7 @@ mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
     mpm_status status = mpmi_agree(stepper->context, mpmi_settle(set, MPMI_STRESS));
     if (!status) status = hash_set(set, m, &of_set);
     if (status) return status;
-    h = absorb(h, of_set);
+    h = mpmi_absorb(h, of_set);
   }
   const mpmi_obstacles *obstacles = &stepper->settings.obstacles;
   for (int64_t i = 0; i < obstacles->count; ++i) h = hash_pose(h, &obstacles->obstacle[i]->pose);

@@ -1,4 +1,5 @@
 /* The host's solver borrows the linear system as an operator. */
+#include "context/mix.h"
 #include "context/structs.h"
 #include "context/transport.h"
 #include "linalg/operator.h"
@@ -113,6 +114,40 @@ static mpm_status open_here(mpm_operator *op, const mpmi_matrix *A) {
   return MPM_OK;
 }
 
+/* ---- the pattern's number ------------------------------------------------------------------------------ */
+/* Unknowns of a node have the same columns. */
+static uint64_t hash_columns(const mpm_operator *op, int64_t node) {
+  const mpmi_matrix *A = op->A;
+  uint64_t h = MPMI_MIX_C;
+  for (int64_t e = A->row_start[node]; e < A->row_start[node + 1]; ++e)
+    for (int64_t c = 0; c < A->block; ++c) {
+      const int32_t column = op->row[A->column[e] * A->block + c];
+      if (column >= 0) h = mpmi_absorb(h, (uint64_t)op->number[column]);
+    }
+  return h;
+}
+
+/* A host knows by this number what it has made of a pattern, and may give its solver to another stepper: so it
+ * is a hash of what the host is lent. It is a sum over rows, which parts add up, and a double holds it. */
+static mpm_status take_pattern_id(mpm_operator *op) {
+  const mpmi_matrix *A = op->A;
+  uint64_t columns = 0, sum = 0;
+  for (int64_t r = 0; r < op->own; ++r) {
+    const int64_t node = op->unknown[r] / A->block;
+    if (!r || op->unknown[r - 1] / A->block != node) columns = hash_columns(op, node);
+    const uint64_t row = mpmi_absorb(mpmi_absorb(columns, (uint64_t)op->node[r]), (uint64_t)op->component[r]);
+    sum += mpmi_avalanche(mpmi_absorb(row, (uint64_t)op->number[r]));
+  }
+  int64_t all = (int64_t)sum;
+  if (A->shared) {
+    const mpm_status status = mpmi_reduce_parts(op->context, MPM_REDUCE_SUM, 1, &all);
+    if (status) return status;
+  }
+  op->pattern_id = (int64_t)(mpmi_avalanche(mpmi_absorb((uint64_t)all, (uint64_t)A->block)) >> 11);
+  op->numbered = A->pattern_id;
+  return MPM_OK;
+}
+
 /* ---- with other parts ---------------------------------------------------------------------------------- */
 /* Takes the numbers of all rows, which the owners tell. */
 static mpm_status take_numbers(mpm_operator *op) {
@@ -141,15 +176,14 @@ static mpm_status number_rows(mpm_operator *op, mpm_status status) {
       !is_new)
     return status;
   op->numbered = -1;
-  ++op->pattern_id;
   if ((status = mpmi_gather_parts(c, op->own, op->rows_of))) return status;
   op->first = op->all = 0;
   for (int32_t r = 0; r < c->transport.parts; ++r) {
     if (r < c->transport.part) op->first += op->rows_of[r];
     op->all += op->rows_of[r];
   }
-  if (!(status = take_numbers(op))) op->numbered = op->A->pattern_id;
-  return status;
+  if ((status = take_numbers(op))) return status;
+  return take_pattern_id(op);
 }
 
 /* Parts meet for a product, or where their solver has returned (collective). A product is made when all want
@@ -173,11 +207,12 @@ mpm_status mpmi_operator_open(mpm_operator *op, const mpmi_matrix *A, int32_t po
     status = number_rows(op, status);
   }
   if (status) return status;
-  for (int64_t r = 0; r < op->rows && !A->shared; ++r) op->number[r] = r;
   if (!A->shared) {
+    for (int64_t r = 0; r < op->rows; ++r) op->number[r] = r;
     op->all = op->rows;
     op->first = 0;
-    op->pattern_id = A->pattern_id;
+    if (op->numbered != A->pattern_id) status = take_pattern_id(op);
+    if (status) return status;
   }
   op->positive_definite = positive_definite;
   op->open = 1;

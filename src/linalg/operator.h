@@ -27,10 +27,9 @@ struct mpm_operator {
   int64_t *row_start;
   int32_t *column;
   double *value;
-  /* Of several parts: the matrix' pattern that the numbers are of, -1: of none; what the host is told, which
-   * changes on all parts together; rows of each part. */
-  int64_t numbered, pattern_id;
-  int64_t *rows_of;
+  int64_t numbered,
+      pattern_id;   /* the matrix' pattern that numbers are of, -1: of none; what the host is told */
+  int64_t *rows_of; /* of several parts: rows of each */
   char *slab;
   int64_t slab_capacity, row_start_capacity, column_capacity, value_capacity, rows_of_capacity;
 };

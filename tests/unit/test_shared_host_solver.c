@@ -240,7 +240,7 @@ static int32_t borrow(member *m, const mpm_operator *matrix, lent *mine) {
   if (mine->start[info->owned_rows] != info->nonzeros || mine->start[info->rows] != info->nonzeros) return 3;
   if (m->parts == 1 && (info->first_row || info->owned_rows != info->rows || info->all_rows != info->rows))
     return 4;
-  if (info->pattern_id < m->pattern_id) return 5;
+  if (info->pattern_id < 0 || info->pattern_id >= INT64_C(1) << 53) return 5;
   m->patterns += info->pattern_id != m->pattern_id;
   m->pattern_id = info->pattern_id;
   return 0;

@@ -38,7 +38,8 @@
 extern "C" {
 #endif
 
-/** A solver of PETSc with its matrix. Serves one stepper, and one thread at a time. */
+/** A solver of PETSc with its matrix. Serves one thread at a time, and any steppers of contexts with the same
+ * parts: one that comes after another makes the matrix anew. */
 typedef struct mpm_petsc mpm_petsc;
 
 /**

@@ -11,7 +11,7 @@
 namespace mpm {
 
 /**
- * A solver of PETSc, for one stepper. It outlives the stepper's last step: declare it first. Where it ends,
+ * A solver of PETSc for steppers. It outlives the last step of each: declare it first. Where it ends,
  * all processes have to come, before PetscFinalize().
  *
  *     mpm::petsc solver(MPI_COMM_SELF);

@@ -687,7 +687,9 @@ class operator_info(Structure):
     owns, in the order of nodes that it has; they are numbered first_row, first_row + 1, ... over all parts, part by
     part. Behind them stand rows that other parts own, those alone that columns of owned rows name: they have number,
     node, component and position, and no entries of their own. Every vector has owned_rows entries. With one part all
-    rows are owned, and number[i] is i."""
+    rows are owned, and number[i] is i.
+
+    What a solver has made of a pattern serves as long as pattern_id is the same, of another stepper too."""
 
     _fields_ = [
         ("struct_size", c_uint32),

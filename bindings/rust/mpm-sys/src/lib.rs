@@ -1070,6 +1070,8 @@ impl Default for mpm_material_desc {
 /// Behind them stand rows that other parts own, those alone that columns of owned rows name: they have number, node,
 /// component and position, and no entries of their own. Every vector has owned_rows entries. With one part all rows are
 /// owned, and number[i] is i.
+///
+/// What a solver has made of a pattern serves as long as pattern_id is the same, of another stepper too.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct mpm_operator_info {
@@ -1085,7 +1087,7 @@ pub struct mpm_operator_info {
     pub rows: i64,
     /// number of stored entries, all of them in owned rows
     pub nonzeros: i64,
-    /// a number that stays the same as long as the sparsity does, on all parts
+    /// a hash of nodes, axes and columns, below 2^53, equal on all parts
     pub pattern_id: i64,
     /// distance from component c to c + 1 of position, in elements; >= rows
     pub ld: i64,

@@ -19,4 +19,10 @@ static inline uint64_t mpmi_avalanche(uint64_t x) {
   return x ^ x >> 31;
 }
 
+/* Takes one more word into a hash of several. */
+static inline uint64_t mpmi_absorb(uint64_t h, uint64_t word) {
+  h = (h ^ word) * MPMI_MIX_A;
+  return h ^ h >> 29;
+}
+
 #endif
