@@ -127,8 +127,8 @@ static uint64_t hash_columns(const mpm_operator *op, int64_t node) {
   return h;
 }
 
-/* A host knows by this number what it has made of a pattern, and may give its solver to another stepper: so it
- * is a hash of what the host is lent. It is a sum over rows, which parts add up, and a double holds it. */
+/* A host knows by this number what it has made of a pattern, and may give its solver to another stepper: so
+ * it is a hash of what the host is lent. It is a sum over rows, which parts add up, and a double holds it. */
 static mpm_status take_pattern_id(mpm_operator *op) {
   const mpmi_matrix *A = op->A;
   uint64_t columns = 0, sum = 0;
