@@ -58,8 +58,8 @@ mpm_status mpmu_enter(mpmu_call *call) {
   const int32_t serial = call->law->desc.serial;
   if (serial && !serial_calls++) pthread_mutex_lock(&one_at_a_time);
   const mpm_status status = run(call);
-  if (status) tell(call, "the subroutine has called XIT");
   if (serial && !--serial_calls) pthread_mutex_unlock(&one_at_a_time);
+  if (status) tell(call, "the subroutine has called XIT");
   return status;
 }
 
