@@ -74,8 +74,9 @@ class LibmpmConan(ConanFile):
         core.set_property("cmake_target_name", "mpm::mpm")
         core.set_property("pkg_config_name", "mpm")
         core.libs = ["mpm"]
-        if self.settings.os != "Windows":
-            core.system_libs = ["m", "pthread"]
+        if self.settings.os == "Windows":
+            return  # where libmpm-umat is not built
+        core.system_libs = ["m", "pthread"]
         umat = self.cpp_info.components["umat"]
         umat.set_property("cmake_target_name", "mpm::umat")
         umat.set_property("pkg_config_name", "mpm-umat")
