@@ -249,7 +249,7 @@ static void share_block(void *user, const mpmi_visit *at) {
   memset(mpmi_part_of(step->layout, bound->nodes, at->block, 0), 0,
          (size_t)step->layout->member_count * sizeof(mpmi_prescribed_part));
   mpmi_tile_use(step->settings->grid, tile, 8);
-  mpmi_tile_load(step->settings->kernels, &step->layout->blocks, at->block, &sums, 8, tile);
+  mpmi_tile_load(step->settings->kernels, &step->layout->blocks, at->block, &sums, MPMI_TAKE_ALL, tile);
   visit_particles(bound, at->block, tile, take_share);
 }
 

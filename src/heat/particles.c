@@ -105,7 +105,8 @@ static double *load_field(const mpmi_heat_job *job, const mpmi_visit *visit, con
   double *tile = tile_of(job, visit, FIELD);
   mpmi_nodal one = *from;
   one.at += value;
-  mpmi_tile_load(job->step->settings->kernels, &job->step->layout->blocks, visit->block, &one, 1, tile);
+  mpmi_tile_load(job->step->settings->kernels, &job->step->layout->blocks, visit->block, &one,
+                 MPMI_TAKE_FIRST, tile);
   return tile;
 }
 

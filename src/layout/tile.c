@@ -42,12 +42,12 @@ void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t 
 }
 
 void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
-                    int32_t tile_values, double *tile) {
+                    int32_t what, double *tile) {
   const mpmi_spans spans = mpmi_spans_of(b, block);
   mpmi_box box;
   for (int32_t n = 0; n < b->neighbours; ++n)
-    if (find_box(b, &spans, block, n, nodes, tile, tile_values, &box))
-      kernels->load_box(tile_values, nodes->values, &box);
+    if (find_box(b, &spans, block, n, nodes, tile, mpmi_taken_values(what), &box))
+      kernels->load_box(what, nodes->values, &box);
 }
 
 void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,

@@ -14,9 +14,9 @@ static inline void mpmi_tile_use(const mpm_grid *grid, double *tile, int32_t val
   const size_t node = (size_t)mpmi_tile_nodes(grid) * sizeof(double);
   mpmi_slack(tile, 8 * node, (size_t)values * node);
 }
-/* Fills a tile with tile_values per node: all of the nodes' values, the first half of 8, or the first. */
+/* Fills a tile with what it takes of each node (transfer/box.h). */
 void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
-                    int32_t tile_values, double *tile);
+                    int32_t what, double *tile);
 /* Prefetches the nodes that the block shares with its neighbours [begin, end), itself among them. */
 void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block,
                      const mpmi_nodal *nodes, int32_t begin, int32_t end);

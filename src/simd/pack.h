@@ -6,7 +6,7 @@
 #include "simd/vector.h"
 
 /* mpmi_interleave() turns four component arrays of MPMI_SIDE particles into vectors, `stride` doubles apart;
- * mpmi_separate4() turns the vectors of four of MPMI_LANES particles into components. */
+ * mpmi_separate() turns the vectors of four of MPMI_LANES particles into components. */
 #if MPMI_WIDTH == 8
 enum { MPMI_SIDE = 8 };
 MPMI_INLINE void mpmi_store_halves(double *low, double *high, mpmi_lanes v) {
@@ -49,7 +49,7 @@ MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *ou
     mpmi_lanes_store(row + 48, MPMI_SHUFFLE(low_26, high_26, 2, 3, 6, 7, 10, 11, 14, 15));
   }
 }
-MPMI_INLINE void mpmi_separate4(const double *in, mpmi_lanes *out) {
+MPMI_INLINE void mpmi_separate(const double *in, mpmi_lanes *out) {
   const mpmi_lanes r01 = mpmi_lanes_load(in), r23 = mpmi_lanes_load(in + 8), r45 = mpmi_lanes_load(in + 16),
                    r67 = mpmi_lanes_load(in + 24);
   const mpmi_lanes ab_low = MPMI_SHUFFLE(r01, r23, 0, 4, 8, 12, 1, 5, 9, 13),
@@ -79,13 +79,13 @@ MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *ou
                     out + 4 * half, 8);
 }
 #if MPMI_WIDTH == 4
-MPMI_INLINE void mpmi_separate4(const double *in, mpmi_lanes *out) {
+MPMI_INLINE void mpmi_separate(const double *in, mpmi_lanes *out) {
   mpmi_v4 a = mpmi_load4(in), b = mpmi_load4(in + 4), c = mpmi_load4(in + 8), d = mpmi_load4(in + 12);
   mpmi_transpose4(&a, &b, &c, &d);
   out[0] = a, out[1] = b, out[2] = c, out[3] = d;
 }
 #else
-MPMI_INLINE void mpmi_separate4(const double *in, mpmi_lanes *out) {
+MPMI_INLINE void mpmi_separate(const double *in, mpmi_lanes *out) {
   const mpmi_v4 a = mpmi_load4(in), b = mpmi_load4(in + 4);
   out[0] = MPMI_SHUFFLE(a.low, b.low, 0, 2);
   out[1] = MPMI_SHUFFLE(a.low, b.low, 1, 3);
@@ -94,13 +94,6 @@ MPMI_INLINE void mpmi_separate4(const double *in, mpmi_lanes *out) {
 }
 #endif
 #endif
-
-/* The first three components. */
-MPMI_INLINE void mpmi_separate(const double *in, mpmi_lanes *out) {
-  mpmi_lanes all[4];
-  mpmi_separate4(in, all);
-  for (int32_t c = 0; c < 3; ++c) out[c] = all[c];
-}
 
 /* Turns four component arrays of n particles into one vector per particle, `stride` doubles apart. */
 MPMI_INLINE void mpmi_pack(int64_t n, const double *a, const double *b, const double *c, const double *d,

@@ -46,6 +46,11 @@ MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d)
   *d = MPMI_SHUFFLE(ab_odd, cd_odd, 2, 3, 6, 7);
 }
 
+/* The first two values of each. */
+MPMI_INLINE mpmi_v4 mpmi_pair4(mpmi_v4 a, mpmi_v4 b) {
+  return MPMI_SHUFFLE(a, b, 0, 1, 4, 5);
+}
+
 #else
 /* 128-bit registers: compilers split wider vectors badly, so they come in two halves. */
 typedef double mpmi_v2 __attribute__((vector_size(16)));
@@ -88,6 +93,9 @@ MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d)
   c->high = MPMI_SHUFFLE(tc.high, td.high, 0, 2);
   d->low = MPMI_SHUFFLE(ta.high, tb.high, 1, 3);
   d->high = MPMI_SHUFFLE(tc.high, td.high, 1, 3);
+}
+MPMI_INLINE mpmi_v4 mpmi_pair4(mpmi_v4 a, mpmi_v4 b) {
+  return (mpmi_v4){a.low, b.low};
 }
 #endif
 

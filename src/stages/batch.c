@@ -100,15 +100,15 @@ static void choose_form(mpmi_batch *b) {
       moves && (b->step->takes == MPMI_TAKES_BLEND || settings->desc.position_order == 2);
   const int32_t matrix = moves && transfer->carries == MPMI_CARRIES_MATRIX;
   if (transfer->moments == MPMI_NEED_MLS && !increments && !b->pass->plain) {
-    b->form = MPMI_GATHER_4_MLS;
+    b->form = MPMI_GATHER_MLS;
     b->need = 0;
     return;
   }
   b->need = MPMI_NEED_GRADIENT | (matrix ? MPMI_NEED_MOMENT : 0);
   if (increments)
-    b->form = matrix ? MPMI_GATHER_8_AFFINE : MPMI_GATHER_8;
+    b->form = matrix ? MPMI_GATHER_BOTH_AFFINE : MPMI_GATHER_BOTH;
   else
-    b->form = matrix ? MPMI_GATHER_4_AFFINE : MPMI_GATHER_4;
+    b->form = matrix ? MPMI_GATHER_AFFINE : MPMI_GATHER_PLAIN;
 }
 
 /* ---- what has gone wrong ------------------------------------------------------------------------------ */
@@ -217,9 +217,9 @@ void mpmi_pass_block(mpmi_batch *b, int64_t block, int64_t next) {
   b->block = block;
   b->sums = &b->step->work->block_sums[block];
   if (starts_sums(b)) memset(b->sums, 0, sizeof *b->sums);
-  const int32_t values = b->form >= MPMI_GATHER_8 ? 8 : 4;
-  mpmi_tile_use(blocks->grid, b->scratch->tile, values);
-  mpmi_tile_load(b->step->settings->kernels, blocks, block, b->from, values, b->scratch->tile);
+  const int32_t what = mpmi_gather_takes(blocks->grid->dim, b->form);
+  mpmi_tile_use(blocks->grid, b->scratch->tile, mpmi_taken_values(what));
+  mpmi_tile_load(b->step->settings->kernels, blocks, block, b->from, what, b->scratch->tile);
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const int64_t begin = layout->member[m].now.start[block], end = layout->member[m].now.start[block + 1];
     if (begin == end) continue;

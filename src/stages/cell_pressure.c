@@ -88,8 +88,8 @@ static void write_block(void *user, const mpmi_visit *visit) {
   static const mpmi_cell_work write = {is_averaged, write_chunk};
   const mpmi_cell_job *job = user;
   double *cells = job->step->work->scratch[visit->task].cells;
-  mpmi_tile_load(job->step->settings->kernels, &job->step->layout->blocks, visit->block, job->cells, 4,
-                 cells);
+  mpmi_tile_load(job->step->settings->kernels, &job->step->layout->blocks, visit->block, job->cells,
+                 MPMI_TAKE_HALF, cells);
   mpmi_cells_visit(job, visit, &write, cells);
 }
 

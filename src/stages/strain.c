@@ -44,12 +44,12 @@ static int32_t deforms_at_once(const mpmi_batch *b) {
 
 /* An MLS transfer that gathers increments finds C, which is the velocity gradient as well. */
 static int32_t finds_only_C(const mpmi_batch *b) {
-  return b->step->settings->transfer->moments == MPMI_NEED_MLS && b->form == MPMI_GATHER_8_AFFINE;
+  return b->step->settings->transfer->moments == MPMI_NEED_MLS && b->form == MPMI_GATHER_BOTH_AFFINE;
 }
 
 /* ---- before the batches of a set ---------------------------------------------------------------------- */
 static int32_t is_matrix(int32_t form) {
-  return form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE;
+  return form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE;
 }
 
 /* Tells whether anything reads the rows of the gradient after the gather. */
@@ -104,8 +104,8 @@ void mpmi_strain_bind(mpmi_batch *b) {
 
 void mpmi_strain_enter(mpmi_batch *b) {
   if (b->step->settings->desc.locking_remedy)
-    mpmi_tile_load(b->step->settings->kernels, &b->step->layout->blocks, b->block, &b->nodes->sums, 4,
-                   b->scratch->cells);
+    mpmi_tile_load(b->step->settings->kernels, &b->step->layout->blocks, b->block, &b->nodes->sums,
+                   MPMI_TAKE_HALF, b->scratch->cells);
 }
 
 /* ---- a batch ------------------------------------------------------------------------------------------ */

@@ -19,16 +19,18 @@ MPMI_INLINE void add_box(int32_t values, const mpmi_box *box) {
     }
 }
 
-/* Copies the nodes into the tile. A tile of 4 values per node may be filled from nodes with 8: it then holds
- * the velocities without their changes. */
-MPMI_INLINE void load_box(int32_t values, int32_t node_values, const mpmi_box *box) {
-  const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW;
+/* Copies the nodes into the tile. */
+MPMI_INLINE void load_box(int32_t what, int32_t node_values, const mpmi_box *box) {
+  const int32_t values = what == MPMI_TAKE_ALL ? 8 : 4, all = values == 8 ? MPMI_BOTH : MPMI_LOW;
   for (int32_t i = 0; i < box->count[0]; ++i)
     for (int32_t j = 0; j < box->count[1]; ++j) {
       double *tile = box->tile + values * (i * box->tile_stride[0] + j * box->tile_stride[1]);
       const double *nodes = box->nodes + node_values * (i * box->node_stride[0] + j * box->node_stride[1]);
-      for (int32_t k = 0; k < box->count[2]; ++k)
-        mpmi_node_store(all, tile + values * k, mpmi_node_load(all, nodes + node_values * k));
+      for (int32_t k = 0; k < box->count[2]; ++k, tile += values, nodes += node_values)
+        if (what == MPMI_TAKE_PAIRS)
+          mpmi_store4(tile, mpmi_pair4(mpmi_load4(nodes), mpmi_load4(nodes + 4)));
+        else
+          mpmi_node_store(all, tile, mpmi_node_load(all, nodes));
     }
 }
 
@@ -59,11 +61,13 @@ void KERNEL(add_box)(int32_t values, const mpmi_box *box) {
     add_box(4, box);
 }
 
-void KERNEL(load_box)(int32_t values, int32_t node_values, const mpmi_box *box) {
-  if (values == 8)
-    load_box(8, 8, box);
-  else if (values == 1)
-    load_value(node_values, box);
+void KERNEL(load_box)(int32_t what, int32_t node_values, const mpmi_box *box) {
+  if (what == MPMI_TAKE_ALL)
+    load_box(MPMI_TAKE_ALL, 8, box);
+  else if (what == MPMI_TAKE_PAIRS)
+    load_box(MPMI_TAKE_PAIRS, 8, box);
+  else if (what == MPMI_TAKE_HALF)
+    load_box(MPMI_TAKE_HALF, node_values, box);
   else
-    load_box(4, node_values, box);
+    load_value(node_values, box);
 }

@@ -13,7 +13,13 @@ typedef struct mpmi_box {
 typedef void (*mpmi_add_box_fn)(int32_t values, const mpmi_box *box);
 /* Prefetches the nodes. */
 typedef void (*mpmi_fetch_box_fn)(int32_t values, const mpmi_box *box);
-/* Copies nodes into the tile: 8 values from 8, 4 from 4 or from the first half of 8, or the first alone. */
-typedef void (*mpmi_load_box_fn)(int32_t values, int32_t node_values, const mpmi_box *box);
+/* What a tile takes of nodes: the first value, the first four, of eight the first two of either half, or all
+ * eight. */
+enum { MPMI_TAKE_FIRST, MPMI_TAKE_HALF, MPMI_TAKE_PAIRS, MPMI_TAKE_ALL };
+static inline int32_t mpmi_taken_values(int32_t what) {
+  return what == MPMI_TAKE_FIRST ? 1 : what == MPMI_TAKE_ALL ? 8 : 4;
+}
+/* Copies nodes, which have 4 or 8 values, into the tile. */
+typedef void (*mpmi_load_box_fn)(int32_t what, int32_t node_values, const mpmi_box *box);
 
 #endif

@@ -10,8 +10,8 @@
 #include "simd/pack.h"
 #include "transfer/gather.h"
 
-/* Holds, per particle of a chunk: v; dv when nodes have 8 values; gradients; sums of w v (x_i - x_p), or of w
- * v (i - middle) in the MLS form. */
+/* Holds, per particle of a chunk: v; dv; gradients; sums of w v (x_i - x_p), or of w v (i - middle) in the MLS
+ * form. Below three axes two of these share four values: v and dv, and the columns of a matrix. */
 typedef struct mpmi_gathered {
   _Alignas(64) double v[4 * MPMI_CHUNK], dv[4 * MPMI_CHUNK], L[3][4 * MPMI_CHUNK], M[3][4 * MPMI_CHUNK];
 } mpmi_gathered;
@@ -40,10 +40,19 @@ MPMI_INLINE void add_slope(int32_t part, int32_t k, double g, mpmi_node v, mpmi_
   *slope = k ? mpmi_node_fma(part, *slope, g, v) : mpmi_node_scale(part, g, v);
 }
 
+MPMI_INLINE void store_columns(int32_t dim, int32_t part, const mpmi_node *column, int64_t p,
+                               double (*to)[4 * MPMI_CHUNK]) {
+  if (dim == 2) {
+    mpmi_store4(to[0] + 4 * p, mpmi_pair4(mpmi_node_low(part, column[0]), mpmi_node_low(part, column[1])));
+    return;
+  }
+  for (int32_t k = 0; k < dim; ++k) mpmi_store4(to[k] + 4 * p, mpmi_node_low(part, column[k]));
+}
+
 MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W, int64_t p,
                                  const double *tile, mpmi_gathered *out) {
-  const int32_t values = form >= MPMI_GATHER_8 ? 8 : 4, mls = form == MPMI_GATHER_4_MLS;
-  const int32_t affine = form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE;
+  const int32_t values = mpmi_taken_values(mpmi_gather_takes(dim, form)), mls = form == MPMI_GATHER_MLS;
+  const int32_t affine = form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE;
   const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW, part = values == 8 ? MPMI_HALF : MPMI_LOW;
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, mid = dim >= 2 ? dim - 2 : 0;
   const double *stencil = tile + (int64_t)values * W->node[p];
@@ -90,10 +99,8 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
   }
   mpmi_store4(out->v + 4 * p, mpmi_node_low(all, v));
   if (values == 8) mpmi_store4(out->dv + 4 * p, mpmi_node_high(v));
-  for (int32_t k = 0; k < dim; ++k) {
-    if (!mls) mpmi_store4(out->L[k] + 4 * p, mpmi_node_low(part, L[k]));
-    if (affine || mls) mpmi_store4(out->M[k] + 4 * p, mpmi_node_low(part, M[k]));
-  }
+  if (!mls) store_columns(dim, part, L, p, out->L);
+  if (affine || mls) store_columns(dim, part, M, p, out->M);
 }
 
 /* Column k of C in the MLS form, from its moments about the middle of the stencil. */
@@ -101,6 +108,13 @@ MPMI_INLINE void mls_column(int32_t width, double h, int32_t dim, mpmi_lanes fir
                             mpmi_lanes *column) {
   const double factor = MPMI_MLS_INVERSE(width) / h;
   for (int32_t r = 0; r < dim; ++r) column[r] = (column[r] + (first + MIDDLE(width)) * v[r]) * factor;
+}
+
+/* Takes the columns of a matrix for as many particles as a register holds, from q on. */
+MPMI_INLINE void take_columns(int32_t dim, const double (*from)[4 * MPMI_CHUNK], int64_t q,
+                              mpmi_lanes (*column)[4]) {
+  for (int32_t k = 0; k < (dim == 2 ? 1 : dim); ++k) mpmi_separate(from[k] + 4 * q, column[k]);
+  if (dim == 2) column[1][0] = column[0][2], column[1][1] = column[0][3];
 }
 
 /* What the particles of a batch are made of, by the kernels of others, while it is in registers. */
@@ -118,29 +132,29 @@ MPMI_INLINE void store_matrix(int32_t dim, double *const *to, int64_t s, mpmi_la
  * batch on. */
 MPMI_INLINE void hand_on(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t q,
                          int64_t s, const mpmi_weights *W, const mpmi_gathered *in, mpmi_made *made) {
-  const int32_t affine = form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE;
-  const int32_t mls = form == MPMI_GATHER_4_MLS;
-  mpmi_lanes v[3], dv[3] = {{0.0}}, L[3][3], column[3];
+  const int32_t affine = form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE;
+  const int32_t mls = form == MPMI_GATHER_MLS, both = form >= MPMI_GATHER_BOTH;
+  mpmi_lanes v[4], change[4] = {{0.0}}, L[3][3], column[3][4];
+  const mpmi_lanes *const dv = both && dim < 3 ? v + 2 : change;
   mpmi_separate(in->v + 4 * q, v);
-  if (form >= MPMI_GATHER_8) mpmi_separate(in->dv + 4 * q, dv);
+  if (both && dim == 3) mpmi_separate(in->dv + 4 * q, change);
+  take_columns(dim, mls ? in->M : in->L, q, column);
   for (int32_t k = 0; k < dim; ++k) {
-    mpmi_separate((mls ? in->M : in->L)[k] + 4 * q, column);
-    if (mls) mls_column(width, job->axis[k].spacing, dim, mpmi_lanes_load(W->first[k] + q), v, column);
-    for (int32_t r = 0; r < dim; ++r) L[r][k] = column[r];
+    if (mls) mls_column(width, job->axis[k].spacing, dim, mpmi_lanes_load(W->first[k] + q), v, column[k]);
+    for (int32_t r = 0; r < dim; ++r) L[r][k] = column[k][r];
   }
   if (job->v)
     for (int32_t k = 0; k < dim; ++k) {
       mpmi_lanes_store(job->v + k * job->ld + s, v[k]);
-      if (form >= MPMI_GATHER_8) mpmi_lanes_store(job->dv + k * job->ld + s, dv[k]);
+      if (both) mpmi_lanes_store(job->dv + k * job->ld + s, dv[k]);
     }
   if (job->L[0]) store_matrix(dim, job->L, s, L);
   if (job->move) mpmi_move_lanes(dim, job->move, s, v, dv, &made->moved);
   if (job->deform) mpmi_deform_lanes(dim, job->deform, s, L, &made->deformed);
   if (!affine) return;
-  for (int32_t k = 0; k < dim; ++k) {
-    mpmi_separate(in->M[k] + 4 * q, column);
-    for (int32_t r = 0; r < dim; ++r) L[r][k] = column[r] * mpmi_lanes_load(W->inverse_moment[k] + q);
-  }
+  take_columns(dim, in->M, q, column);
+  for (int32_t k = 0; k < dim; ++k)
+    for (int32_t r = 0; r < dim; ++r) L[r][k] = column[k][r] * mpmi_lanes_load(W->inverse_moment[k] + q);
   store_matrix(dim, job->C, s, L);
 }
 
@@ -156,8 +170,8 @@ MPMI_INLINE void mask_holes(int32_t width, int32_t form, const double *volume, i
   for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
       const double live = volume[p] > 0.0 ? 1.0 : 0.0;
       W->w[0][k][p] *= live;
-      if (form != MPMI_GATHER_4_MLS) W->g[0][k][p] *= live;
-      if (form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE) W->u[0][k][p] *= live;
+      if (form != MPMI_GATHER_MLS) W->g[0][k][p] *= live;
+      if (form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE) W->u[0][k][p] *= live;
     }
 }
 

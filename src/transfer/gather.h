@@ -3,19 +3,24 @@
 #define MPMI_GATHER_H
 
 #include "material/deformation.h"
+#include "transfer/box.h"
 #include "transfer/move.h"
 #include "transfer/streams.h"
 #include "transfer/weights.h"
 
-/* Forms of the gather: how many values nodes have, and what particles take from them. */
+/* Forms of the gather: what particles take. */
 enum {
-  MPMI_GATHER_4,        /* 4 values: velocity and L */
-  MPMI_GATHER_4_AFFINE, /* 4 values: velocity, L and C */
-  MPMI_GATHER_4_MLS,    /* 4 values: velocity, and in the place of L the C of the MLS form */
-  MPMI_GATHER_8,        /* 8 values: velocity, its change and L */
-  MPMI_GATHER_8_AFFINE, /* 8 values: velocity, its change, L and C */
+  MPMI_GATHER_PLAIN,       /* velocity and L */
+  MPMI_GATHER_AFFINE,      /* velocity, L and C */
+  MPMI_GATHER_MLS,         /* velocity, and in the place of L the C of the MLS form */
+  MPMI_GATHER_BOTH,        /* velocity, its change and L */
+  MPMI_GATHER_BOTH_AFFINE, /* velocity, its change, L and C */
   MPMI_GATHER_FORMS
 };
+/* Returns what the tile takes of nodes: on fewer than three axes a velocity and its change are four values. */
+static inline int32_t mpmi_gather_takes(int32_t dim, int32_t form) {
+  return form < MPMI_GATHER_BOTH ? MPMI_TAKE_HALF : dim < 3 ? MPMI_TAKE_PAIRS : MPMI_TAKE_ALL;
+}
 
 /* A batch of particles, and what becomes of what is gathered for them. `move` and `deform` work on it while
  * it is in registers, where they are not NULL. Rows are stored for those that read them later, of the

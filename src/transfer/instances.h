@@ -29,11 +29,11 @@ SCATTER_FORMS(3, 4)
 #endif
 #ifdef GATHER
 #define GATHER_FORMS(dim, width)                                                                             \
-  GATHER(dim, width, MPMI_GATHER_4, gather_##dim##_##width##_4)                                              \
-  GATHER(dim, width, MPMI_GATHER_4_AFFINE, gather_##dim##_##width##_4_affine)                                \
-  GATHER(dim, width, MPMI_GATHER_4_MLS, gather_##dim##_##width##_4_mls)                                      \
-  GATHER(dim, width, MPMI_GATHER_8, gather_##dim##_##width##_8)                                              \
-  GATHER(dim, width, MPMI_GATHER_8_AFFINE, gather_##dim##_##width##_8_affine)
+  GATHER(dim, width, MPMI_GATHER_PLAIN, gather_##dim##_##width##_plain)                                      \
+  GATHER(dim, width, MPMI_GATHER_AFFINE, gather_##dim##_##width##_affine)                                    \
+  GATHER(dim, width, MPMI_GATHER_MLS, gather_##dim##_##width##_mls)                                          \
+  GATHER(dim, width, MPMI_GATHER_BOTH, gather_##dim##_##width##_both)                                        \
+  GATHER(dim, width, MPMI_GATHER_BOTH_AFFINE, gather_##dim##_##width##_both_affine)
 GATHER_FORMS(1, 2)
 GATHER_FORMS(1, 3)
 GATHER_FORMS(1, 4)

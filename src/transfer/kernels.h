@@ -2,8 +2,8 @@
  *
  * Kernels work on the slots of one block, chunk by chunk, with the block's tile: a private copy of the
  * block's nodes plus halo. Tile nodes hold `values` doubles: 4 [px py pz m] or 8 [px py pz m fx fy fz 0] when
- * scattering, and [vx vy vz m] or [vx vy vz m dvx dvy dvz 0] when gathering, where v is the updated nodal
- * velocity and dv its change over the step. The last axis runs fastest.
+ * scattering, and [vx vy vz m], [vx vy dvx dvy] or [vx vy vz m dvx dvy dvz 0] when gathering, where v is the
+ * updated nodal velocity and dv its change over the step. The last axis runs fastest.
  *
  * They are specialised by dim x stencil width x form x instruction set. A basis family enters through its
  * weights alone. */

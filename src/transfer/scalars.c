@@ -56,7 +56,7 @@ MPMI_INLINE void sum_outer(int32_t dim, int32_t width, int32_t slopes, const mpm
 MPMI_INLINE mpmi_lanes sum_rows(int32_t width, const double *rows, const double (*weight)[MPMI_CHUNK],
                                 int64_t q) {
   mpmi_lanes node[4];
-  mpmi_separate4(rows + 4 * q, node);
+  mpmi_separate(rows + 4 * q, node);
   mpmi_lanes sum = mpmi_lanes_load(weight[0] + q) * node[0];
   for (int32_t k = 1; k < width; ++k) sum += mpmi_lanes_load(weight[k] + q) * node[k];
   return sum;
