@@ -5,6 +5,7 @@
 #include "boundary/prescribed.h"
 #include "layout/reached.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -46,7 +47,10 @@ void mpmi_motion_enter(mpmi_batch *b) {
   memcpy(b->move.centre, cover->centre, sizeof b->move.centre);
   memcpy(b->move.half, cover->half, sizeof b->move.half);
   for (int32_t k = 0; k < 3 && mpmi_is_total_lagrangian(b->step->settings->grid); ++k)
-    b->move.half[k] = (double)INFINITY;
+    b->move.half[k] = DBL_MAX;
+  for (int32_t k = 0; k < 3; ++k)
+    b->move.within[k] = !(b->move.period[k] > 0.0) && b->move.high[k] - b->move.centre[k] > b->move.half[k] &&
+                        b->move.centre[k] - b->move.low[k] > b->move.half[k];
 }
 
 /* ---- beyond the faces of the grid --------------------------------------------------------------------- */

@@ -34,12 +34,14 @@ typedef struct mpmi_move {
   double *x_new[3], *v_new[3];
   double centre[3], half[3];           /* where particles may be: |x - centre| <= half */
   double low[3], high[3];              /* bounds of the grid */
+  int32_t within[3];                   /* 1: of these the former are within the latter, and nothing wraps */
   double period[3], inverse_period[3]; /* lengths; 0 when not periodic */
 } mpmi_move;
 typedef uint32_t (*mpmi_move_fn)(const mpmi_move *job, int64_t n);
 
 /* What is known of the particles that have moved: bad is 0 where all is finite, outside the largest way
- * beyond a face of the grid, astray that beyond the bounds. */
+ * beyond a face of the grid, but for axes of which `within` says that it is astray, astray that beyond the
+ * bounds. */
 typedef struct mpmi_moved {
   mpmi_lanes bad, outside, astray;
 } mpmi_moved;
@@ -52,8 +54,10 @@ MPMI_INLINE mpmi_moved mpmi_nothing_moved(void) {
 /* Looks where particles have come along an axis. */
 MPMI_INLINE void mpmi_look_where(const mpmi_move *job, int32_t axis, mpmi_lanes x, mpmi_moved *t) {
   mpmi_lanes away = x - job->centre[axis];
-  away -= job->period[axis] * mpmi_lanes_round(away * job->inverse_period[axis]);
-  t->outside = mpmi_lanes_max(t->outside, mpmi_lanes_max(job->low[axis] - x, x - job->high[axis]));
+  if (!job->within[axis]) {
+    away -= job->period[axis] * mpmi_lanes_round(away * job->inverse_period[axis]);
+    t->outside = mpmi_lanes_max(t->outside, mpmi_lanes_max(job->low[axis] - x, x - job->high[axis]));
+  }
   t->astray = mpmi_lanes_max(t->astray, mpmi_lanes_abs(away) - job->half[axis]);
 }
 
@@ -87,7 +91,7 @@ MPMI_INLINE void mpmi_move_lanes(int32_t dim, const mpmi_move *job, int64_t s, c
 MPMI_INLINE uint32_t mpmi_move_flags(const mpmi_moved *t) {
   return (mpmi_lanes_sum(t->bad) == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE) |
          (mpmi_lanes_largest(t->outside) > 0.0 ? (uint32_t)MPMI_OUTSIDE : 0u) |
-         (mpmi_lanes_largest(t->astray) > 0.0 ? (uint32_t)MPMI_LEFT_BOUNDS : 0u);
+         (mpmi_lanes_largest(t->astray) > 0.0 ? (uint32_t)(MPMI_LEFT_BOUNDS | MPMI_OUTSIDE) : 0u);
 }
 
 #endif
