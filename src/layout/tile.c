@@ -1,6 +1,5 @@
 /* Tiles and the blocks around them: loads, adds and fetches box by box, by the kernels of transfer/box.c. */
 #include "layout/tile.h"
-#include "layout/reached.h"
 
 int32_t mpmi_tile_nodes(const mpm_grid *grid) {
   int32_t count = 1;
@@ -33,12 +32,10 @@ static int32_t are_near(const mpmi_blocks *b, const mpmi_nodal *nodes) {
 }
 
 void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block,
-                     const mpmi_nodal *nodes, int32_t begin, int32_t end) {
+                     const mpmi_spans *spans, const mpmi_nodal *nodes, int32_t begin, int32_t end) {
   mpmi_box box;
-  if (begin >= end || are_near(b, nodes)) return;
-  const mpmi_spans spans = mpmi_spans_of(b, block);
-  for (int32_t n = begin; n < end; ++n)
-    if (find_box(b, &spans, block, n, nodes, nodes->at, 0, &box)) kernels->fetch_box(nodes->values, &box);
+  for (int32_t n = begin; n < end && !are_near(b, nodes); ++n)
+    if (find_box(b, spans, block, n, nodes, nodes->at, 0, &box)) kernels->fetch_box(nodes->values, &box);
 }
 
 void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,

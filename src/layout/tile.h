@@ -5,6 +5,7 @@
 
 #include "context/slack.h"
 #include "layout/nodes.h"
+#include "layout/reached.h"
 
 /* Returns the number of nodes of a tile. */
 int32_t mpmi_tile_nodes(const mpm_grid *grid);
@@ -17,9 +18,10 @@ static inline void mpmi_tile_use(const mpm_grid *grid, double *tile, int32_t val
 /* Fills a tile with what it takes of each node (transfer/box.h). */
 void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
                     int32_t what, double *tile);
-/* Prefetches the nodes that the block shares with its neighbours [begin, end), itself among them. */
+/* Prefetches the nodes that a block with these spans shares with its neighbours [begin, end), itself among
+ * them. */
 void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block,
-                     const mpmi_nodal *nodes, int32_t begin, int32_t end);
+                     const mpmi_spans *spans, const mpmi_nodal *nodes, int32_t begin, int32_t end);
 /* Adds the tile, which has as many values per node, to the nodes and leaves it clean. */
 void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
                    double *tile);

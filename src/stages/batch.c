@@ -201,7 +201,7 @@ static void take_batch(mpmi_batch *b, int64_t begin, int64_t n) {
 /* Fetches a share of the nodes of the block that comes next, while the particles of this one are at work. */
 static void fetch_next(mpmi_batch *b, int64_t next, int64_t done, int64_t n, int64_t slots) {
   const mpmi_blocks *blocks = &b->step->layout->blocks;
-  mpmi_tile_fetch(b->step->settings->kernels, blocks, next, b->from,
+  mpmi_tile_fetch(b->step->settings->kernels, blocks, next, &b->next, b->from,
                   (int32_t)(blocks->neighbours * done / slots),
                   (int32_t)(blocks->neighbours * (done + n) / slots));
 }
@@ -218,6 +218,7 @@ void mpmi_pass_block(mpmi_batch *b, int64_t block, int64_t next) {
   b->sums = &b->step->work->block_sums[block];
   if (starts_sums(b)) memset(b->sums, 0, sizeof *b->sums);
   const int32_t what = mpmi_gather_takes(blocks->grid->dim, b->form);
+  if (next >= 0) b->next = mpmi_spans_of(blocks, next);
   mpmi_tile_use(blocks->grid, b->scratch->tile, mpmi_taken_values(what));
   mpmi_tile_load(b->step->settings->kernels, blocks, block, b->from, what, b->scratch->tile);
   for (int32_t m = 0; m < layout->member_count; ++m) {

@@ -5,6 +5,7 @@
 #define MPMI_BATCH_H
 
 #include "layout/nodes.h"
+#include "layout/reached.h"
 #include "layout/step.h"
 #include "particles/law_batch.h"
 
@@ -46,6 +47,7 @@ struct mpmi_batch {
   /* The block at hand: */
   int64_t block;
   mpmi_sums *sums;
+  mpmi_spans next; /* of the block that comes next */
   /* The batch at hand: */
   int64_t begin, n;
   mpmi_taken taken; /* what moving and deforming returned where the gather has done that */

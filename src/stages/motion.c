@@ -3,7 +3,6 @@
 #include "stages/batch.h"
 #include "stages/stages.h"
 #include "boundary/prescribed.h"
-#include "layout/reached.h"
 
 #include <float.h>
 #include <math.h>

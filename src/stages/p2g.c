@@ -75,10 +75,11 @@ static void scatter_slots(const p2g_job *job, const mpmi_scatter *scatter, int64
   const mpmi_scatter_fn kernel =
       settings->kernels->scatter[settings->grid->dim][settings->grid->width][job->form];
   const int64_t chunks = (end - begin + MPMI_CHUNK - 1) / MPMI_CHUNK;
+  const mpmi_spans spans = mpmi_spans_of(blocks, block);
   for (int32_t k = 0; k < pieces; ++k) {
     const int64_t from = begin + chunks * k / pieces * MPMI_CHUNK;
     const int64_t to = begin + chunks * (k + 1) / pieces * MPMI_CHUNK;
-    mpmi_tile_fetch(settings->kernels, blocks, block, job->to, k, k + 1);
+    mpmi_tile_fetch(settings->kernels, blocks, block, &spans, job->to, k, k + 1);
     if (to > from) kernel(scatter, from, to < end ? to : end);
   }
 }
