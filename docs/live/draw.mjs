@@ -99,12 +99,26 @@ export function painter(canvas, BOX) {
       set: (name, ...values) => gl[`uniform${values.length}f`](place(name), ...values),
     };
   }
-  const points = programOf(PARTICLES, DISC);
-  const shapes = programOf(POLYGON, PLAIN);
-  const [moving, still, corners] = [gl.createBuffer(), gl.createBuffer(), gl.createBuffer()];
-  gl.enable(gl.BLEND);
-  gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+  let points, shapes, moving, still, corners;
   let scene = null;
+  let bands = new Float32Array(0);
+
+  /** Makes what goes with the context. */
+  function make() {
+    points = programOf(PARTICLES, DISC);
+    shapes = programOf(POLYGON, PLAIN);
+    [moving, still, corners] = [gl.createBuffer(), gl.createBuffer(), gl.createBuffer()];
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    keepBands();
+  }
+  function keepBands() {
+    gl.bindBuffer(gl.ARRAY_BUFFER, still);
+    gl.bufferData(gl.ARRAY_BUFFER, bands, gl.STATIC_DRAW);
+  }
+  make();
+  canvas.addEventListener('webglcontextlost', (event) => event.preventDefault()); // else it never comes back
+  canvas.addEventListener('webglcontextrestored', make);
 
   function attribute(program, name, buffer, size, stride, offset) {
     const at = program.at(name);
@@ -117,14 +131,13 @@ export function painter(canvas, BOX) {
     /** Takes what stays the same: colours, sizes and bands. */
     open(recipe, heights) {
       scene = { ...recipe, counts: heights.map((one) => one.length) };
-      const all = new Float32Array(scene.counts.reduce((a, b) => a + b, 0));
+      bands = new Float32Array(scene.counts.reduce((a, b) => a + b, 0));
       let at = 0;
       for (const one of heights) {
-        all.set(one, at);
+        bands.set(one, at);
         at += one.length;
       }
-      gl.bindBuffer(gl.ARRAY_BUFFER, still);
-      gl.bufferData(gl.ARRAY_BUFFER, all, gl.STATIC_DRAW);
+      keepBands();
     },
     draw({ floats, obstacles }, dark) {
       const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((one) =>

@@ -6,6 +6,7 @@ import { HEIGHT, LIMITS, NAMES, WIDTH, titleOf } from './scenes.mjs';
 const find = (id) => document.getElementById(id);
 const canvas = find('picture');
 const dark = matchMedia('(prefers-color-scheme: dark)');
+const LONGEST = 0.1; // seconds; a scene does not make up for more, as of a tab that was hidden
 const SHARED_AT_ONCE = 1000; // milliseconds of steps between two pictures on the way to a shared state
 
 // ---- the worker: questions have numbers, and answers come in the same order ----
@@ -52,14 +53,15 @@ function run(on) {
 function leave() {
   if (!now.walking) return;
   now.walking = false;
-  now.opened++;
   tell('');
 }
 
 /** Begins a scene anew; for a link that names a number of steps, at the state after these. */
 async function open(name, wanted, link = {}) {
-  Object.assign(now, { name, wanted, walking: false });
+  // here, so that what the visitor does while the scene is made counts
+  Object.assign(now, { name, wanted, walking: Boolean(link.steps), running: !link.steps });
   const mine = ++now.opened;
+  const left = () => mine !== now.opened || !now.walking;
   for (const button of find('scenes').children) button.setAttribute('aria-pressed', button.value === name);
   find('wanted').value = Math.log(wanted);
   find('count').textContent = wanted;
@@ -67,19 +69,17 @@ async function open(name, wanted, link = {}) {
   if (mine !== now.opened) return;
   paint.open(recipe, heights);
   now.frame = frame;
-  now.running = !link.steps;
   write();
-  if (!link.steps) return;
-  now.walking = true;
+  if (left()) return;
   while (now.frame.steps < link.steps) {
     tell(`On the way to step ${link.steps} …`);
     const next = await ask('steps', { count: link.steps - now.frame.steps, budget: SHARED_AT_ONCE });
-    if (mine !== now.opened) return;
+    if (left()) return;
     now.frame = next;
     write();
   }
   const { hash } = await ask('hash');
-  if (mine !== now.opened) return;
+  if (left()) return;
   now.walking = false;
   if (!link.hash) tell(`State ${hash} after ${link.steps} steps.`);
   else if (hash === link.hash)
@@ -194,11 +194,14 @@ canvas.onpointerup = canvas.onpointercancel = (event) => {
 
 // ---- frames ----
 let busy = false;
-async function next() {
+let last; // when a frame was asked for
+async function next(time) {
+  const seconds = Math.min((time - (last ?? time)) / 1000, LONGEST);
+  last = time;
   busy = true;
   const mine = now.opened;
   try {
-    const frame = await ask('frame', { running: now.running });
+    const frame = await ask('frame', { seconds: now.running ? seconds : 0 });
     if (mine === now.opened && frame.steps >= now.frame.steps) now.frame = frame;
     seen.frames++;
   } catch (error) {
@@ -209,7 +212,7 @@ async function next() {
 }
 function tick(time) {
   draw();
-  if (!busy && now.frame) next();
+  if (!busy && now.frame) next(time);
   if (time - seen.since > 500) {
     seen.rate = (1000 * (seen.frames - seen.at)) / (time - seen.since);
     seen.since = time;
@@ -223,9 +226,10 @@ let paint;
 try {
   paint = painter(canvas, C.MPM_SHAPE_BOX);
   const binary = new URLSearchParams(location.search).get('binary'); // of the package; by default what the browser can do
-  await ask('open', { source: binary ? new URL(`./libmpm/${binary}`, import.meta.url).href : undefined });
+  const source = binary ? new URL(`./libmpm/${binary}`, import.meta.url).href : undefined;
   requestAnimationFrame(tick);
-  await follow();
+  // the scene at once, so that what the visitor asks for while the binary comes is asked after it
+  await Promise.all([ask('open', { source }), follow()]);
 } catch (error) {
   tell(error.message);
 }

@@ -2,8 +2,8 @@
 import { load } from './libmpm/libmpm.mjs';
 import { advance, build, recipeOf } from './scenes.mjs';
 
-const FRAME = 1 / 60; // seconds of the clock
-const BUDGET = 13; // milliseconds for the steps of a frame
+const BUDGET = 13; // milliseconds for the steps of a frame, at least
+const SHARE = 0.5; // of the time of a frame for its steps, at least
 const REACH = 0.1; // of the hand
 const PULL = 3000;
 const DRAG = 40;
@@ -36,14 +36,13 @@ function pull(batch, [ax, ay]) {
   }
 }
 
-/** Steps until the scene's clock has gone on by `seconds`, a number of steps is made, or time is up. */
-function run({ seconds = Infinity, steps = Infinity, budget = BUDGET }) {
+/** Steps until the scene's clock shows a time, a number of steps is made, or time is up. */
+function run({ until = Infinity, steps = Infinity, budget }) {
   const start = performance.now();
-  const goal = scene.t + seconds;
   let made = 0;
   scene.spent *= 0.9; // here, so that a pause leaves the rate as it is
   scene.made *= 0.9;
-  while (scene.t < goal && made < steps && performance.now() - start < budget) {
+  while (scene.t < until && made < steps && performance.now() - start < budget) {
     const info = advance(scene.stepper, 1);
     scene.t = info.t;
     if (hand.on) {
@@ -53,6 +52,7 @@ function run({ seconds = Infinity, steps = Infinity, budget = BUDGET }) {
     scene.steps++; // counted here, so that steps before one that fails count
     made++;
   }
+  scene.due = Math.min(until, scene.t); // a step too long is made up for; what time was too short for is not
   scene.spent += performance.now() - start;
   scene.made += made;
 }
@@ -97,7 +97,7 @@ const answers = {
     const made = build(mpm, recipe); // the old one stays if this fails
     scene?.dispose();
     hand.on = false;
-    scene = { ...made, pace: recipe.pace, t: 0, steps: 0, spent: 0, made: 0, touched: false };
+    scene = { ...made, pace: recipe.pace, t: 0, due: 0, steps: 0, spent: 0, made: 0, touched: false };
     const { sets, obstacles, grid } = recipe;
     return {
       recipe: {
@@ -110,8 +110,9 @@ const answers = {
       ...frame(),
     };
   },
-  frame({ running }) {
-    if (running) run({ seconds: FRAME * scene.pace });
+  frame({ seconds }) {
+    const budget = Math.max(BUDGET, 1e3 * SHARE * seconds);
+    if (seconds > 0) run({ until: scene.due + seconds * scene.pace, budget });
     return frame();
   },
   steps({ count, budget }) {
@@ -131,15 +132,22 @@ const answers = {
   },
 };
 
-// one after the other, in the order in which they come
-let last = Promise.resolve();
+// one after the other, in the order in which they come; all wait for the library
+let loaded;
+let last = new Promise((done) => {
+  loaded = done;
+});
 onmessage = ({ data: { id, ask, ...values } }) => {
-  last = last.then(async () => {
+  const turn = async () => {
     try {
+      if (ask !== 'open' && !mpm) throw new Error('the library is not there');
+      if (ask !== 'open' && ask !== 'scene' && !scene) throw new Error('there is no scene');
       const answer = await answers[ask](values);
       postMessage({ id, answer }, answer.floats ? [answer.floats.buffer] : []);
     } catch (error) {
       postMessage({ id, error: error.message });
     }
-  });
+  };
+  if (ask === 'open') turn().then(loaded);
+  else last = last.then(turn);
 };

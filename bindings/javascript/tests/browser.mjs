@@ -56,10 +56,17 @@ async function visit(page, link) {
   await page.goto(site + link);
   await page.evaluate(() => import('./page.mjs').then(() => null));
 }
+/** The same without another page. */
+async function visitWithin(page, fragment) {
+  await page.evaluate((to) => {
+    document.getElementById('message').textContent = '';
+    location.hash = to;
+  }, fragment);
+}
 const state = (page) =>
   page.evaluate(async () => {
     const { now } = await import('./page.mjs');
-    const { floats, ...rest } = now.frame;
+    const { floats = [], ...rest } = now.frame ?? {}; // null before the first scene
     return {
       ...rest,
       running: now.running,
@@ -174,6 +181,106 @@ try {
     ({ message, hash }) => /begins the scene anew/.test(message) && !/steps/.test(hash),
   );
   console.log(`browser: the pointer has lifted the jelly by ${moved.toFixed(3)}`);
+
+  // a picture whose context is lost comes back, with a scene that was begun meanwhile
+  await visit(page, `#scene=sand&n=${WANTED}&steps=1`);
+  await until(page, 'sand', ({ message }) => message.startsWith('State'));
+  await page.waitForTimeout(300);
+  const picture = () => page.locator('#picture').screenshot();
+  const whole = await picture();
+  await page.evaluate(() => {
+    const gl = document.getElementById('picture').getContext('webgl2');
+    window.loss = gl.getExtension('WEBGL_lose_context');
+    window.loss.loseContext();
+  });
+  await visitWithin(page, `#scene=jelly&n=${WANTED}&steps=1`);
+  const jelly = floats.length / 4;
+  await until(page, 'jelly', ({ count, message }) => count === jelly && message.startsWith('State'));
+  await visitWithin(page, `#scene=sand&n=${WANTED}&steps=1`);
+  await until(page, 'sand again', ({ count, message }) => count !== jelly && message.startsWith('State'));
+  await page.evaluate(() => window.loss.restoreContext());
+  await page.waitForTimeout(1000);
+  assert.ok((await painted(page, 'back')) > 0.1, 'the picture has not come back');
+  assert.ok((await picture()).equals(whole), 'the picture is another one since it came back');
+  console.log('browser: the picture has come back');
+
+  // the pace is that of the clock, whatever the screen has
+  for (const period of [4, 50]) {
+    const screen = await fresh({ width: 200, height: 200 });
+    await screen.addInitScript((each) => {
+      const ask = (draw) => setTimeout(() => (window.hidden ? ask(draw) : draw(performance.now())), each);
+      window.requestAnimationFrame = ask;
+      window.asked = 0; // seconds for which frames were wanted
+      const { postMessage } = Worker.prototype;
+      Worker.prototype.postMessage = function (data) {
+        if (data.ask === 'frame') window.asked += data.seconds;
+        return postMessage.call(this, data);
+      };
+    }, period);
+    await visit(screen, `#scene=jelly&n=${WANTED}`);
+    await until(screen, 'a screen', ({ steps }) => steps > 20);
+    const clocks = () =>
+      screen.evaluate(async () => {
+        const { now } = await import('./page.mjs');
+        return [now.frame.t, window.asked, performance.now() / 1000];
+      });
+    const passed = async (what) => {
+      const before = await clocks();
+      await what();
+      return (await clocks()).map((one, k) => one - before[k]);
+    };
+    const [went, asked, clock] = await passed(() => screen.waitForTimeout(2000));
+    const [made, wanted, all] = [went, asked, clock].map((one) => one.toFixed(2));
+    const said = `${made} s of the scene, of ${wanted} s asked for, in ${all} s`;
+    assert.ok(went < 1.1 * clock, said); // less where the machine is slow
+    assert.ok(asked < 1.1 * clock && asked > 0.5 * clock, said);
+    console.log(`browser: a picture each ${period} ms: ${said}`);
+    const [, hidden, away] = await passed(async () => {
+      await screen.evaluate(() => (window.hidden = true));
+      await screen.waitForTimeout(2000);
+      await screen.evaluate(() => (window.hidden = false));
+      await screen.waitForTimeout(300);
+    });
+    assert.ok(hidden < away - 1, `${hidden} s of the scene were wanted in ${away} s, of which 2 were hidden`);
+    await screen.close();
+  }
+
+  // what the visitor asks for while the binary comes
+  const early = await fresh({ width: 1000, height: 800 });
+  let come;
+  const wait = new Promise((done) => (come = done));
+  await early.route('**/*.wasm', (route) => wait.then(() => route.continue()));
+  const opening = visit(early, `#scene=jelly&n=${WANTED}`);
+  await early.waitForSelector('button[value=water]');
+  await early.waitForTimeout(500);
+  await early.click('button[value=water]');
+  await early.click('#step');
+  await early.waitForTimeout(200);
+  come();
+  await opening;
+  const kept = await until(early, 'an early choice', ({ count, steps }) => count > 0 && steps > 0);
+  assert.equal(await early.getAttribute('button[value=water]', 'aria-pressed'), 'true');
+  assert.equal(kept.message, '');
+  assert.deepEqual([kept.steps, kept.running], [1, false]);
+
+  // the worker by itself: early questions wait for the library; steps that are longer than a frame add up
+  const answers = await early.evaluate((frames) => {
+    const worker = new Worker('./worker.mjs', { type: 'module' });
+    const said = [];
+    const all = new Promise((done) => {
+      worker.onmessage = ({ data }) => said.push(data) === frames + 3 && done(said);
+    });
+    worker.postMessage({ id: 1, ask: 'scene', name: 'jelly', wanted: 1000 });
+    worker.postMessage({ id: 2, ask: 'hash' });
+    worker.postMessage({ id: 3, ask: 'open' });
+    for (let k = 0; k < frames; k++) worker.postMessage({ id: 4 + k, ask: 'frame', seconds: 0.5 / frames });
+    return all.then((list) => list.map(({ id, answer, error }) => [id, answer?.steps, answer?.t, error]));
+  }, 500);
+  const first = answers.slice(0, 3).map(([id, , , error]) => [id, error]);
+  assert.deepEqual(first, [3, 1, 2].map((id) => [id, undefined]));
+  const [, made, t] = answers.at(-1);
+  assert.ok(t > 0.48 && t < 0.5 + t / made, `${t} s of the scene in half a second, by ${made} steps`);
+  await early.close();
 
   // light, and a phone
   const dark = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
