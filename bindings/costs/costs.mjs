@@ -3,7 +3,6 @@
 //   node costs.mjs PACKAGE [libmpm.wasm]
 import { pathToFileURL } from 'node:url';
 const { C, load } = await import(pathToFileURL(`${process.argv[2]}/libmpm.mjs`));
-const mpm = await load(process.argv[3]);
 
 function pull(batch, [, down]) {
   const { n, mass } = batch;
@@ -42,7 +41,9 @@ const law = {
   },
 };
 
-function make(force, own) {
+/** Each has an instance of its own: where one has several contexts, callbacks get copies. */
+async function make(force, own) {
+  const mpm = await load(process.argv[3]);
   const context = mpm.context();
   const grid = context.grid({ dim: 2, cells: [200, 200], spacing: [1 / 200, 1 / 200] });
   const material = own
@@ -66,7 +67,7 @@ function best(work, inner, tries = 200) {
   return least;
 }
 
-const kinds = [make(), make(pull), make(null, law)];
+const kinds = [await make(), await make(pull), await make(null, law)];
 const { set } = kinds[0];
 let sum = 0;
 const count = best(() => (sum += set.count), 1000);

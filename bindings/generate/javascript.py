@@ -32,13 +32,15 @@ def shape_of(field):
 
 
 def entry(struct, field):
-    """A field in the layout: [offset, kind], with the number of entries, or with the extents of what it points to."""
+    """A field in the layout: [offset, kind], with the number of entries, or with the extents of what it points to, which
+    is "f64*", or "f64* out" where it is to be filled."""
     kind, offset = field["type"], field["offset32"]
     if is_number(kind):
         name = "id" if (struct["name"], field["name"]) in IDS else NUMBERS[kind["base"]]
         return [offset, name, kind["count"]] if "count" in kind else [offset, name]
     shape = shape_of(field)
-    return [offset, NUMBERS[kind["base"]] + "*", *shape] if shape else [offset, "pointer"]
+    mark = "*" if kind["const"] else "* out"
+    return [offset, NUMBERS[kind["base"]] + mark, *shape] if shape else [offset, "pointer"]
 
 
 def literal(value):

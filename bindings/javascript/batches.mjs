@@ -7,10 +7,12 @@ function lentStruct(type) {
   const Batch = class {
     #machine;
     #at;
+    #loan;
     #kept = {};
     constructor(machine, at) {
       this.#machine = machine;
       this.#at = at;
+      this.#loan = machine.loan;
     }
     get #here() {
       if (!this.#machine) throw new Error('a batch is lent for the time of the callback alone');
@@ -25,14 +27,15 @@ function lentStruct(type) {
       const [offset, kind, ...shape] = fields[name];
       const at = machine.read(this.#at + offset, 'pointer');
       if (!at) return undefined;
-      const of = kind.slice(0, -1);
-      if (shape.length === 1) return machine.array(of, at, this.number('n'));
+      const of = kind.slice(0, kind.indexOf('*'));
+      const filled = kind.endsWith('out');
+      if (shape.length === 1) return this.#loan.array(of, at, this.number('n'), filled);
       const components = dim ?? (fields[shape[0]] ? this.number(shape[0]) : Number(shape[0]));
-      return machine.components(of, at, components, this.number('n'), this.number('ld'));
+      return this.#loan.components(of, at, components, this.number('n'), this.number('ld'), filled);
     }
-    /** Arrays of what a callback is given beside the batch. */
+    /** Arrays that a callback is given beside the batch, to be filled. */
     beside(kind, at, components = this.number('dim')) {
-      return this.#here.components(kind, at, components, this.number('n'), this.number('ld'));
+      return this.#loan.components(kind, at, components, this.number('n'), this.number('ld'), true);
     }
     field(name, components = 1, kind = 'f64') {
       const machine = this.#here;
@@ -46,7 +49,7 @@ function lentStruct(type) {
           stride,
         );
         if (status) throw machine.error(status, 0);
-        return machine.components(
+        return this.#loan.components(
           kind,
           machine.read(data, 'pointer'),
           components,
@@ -62,7 +65,7 @@ function lentStruct(type) {
   const known = (name) => name in fields || /^\d+$/.test(name) || name === 'ld';
   for (const [name, [, kind, ...shape]] of Object.entries(fields)) {
     if (name === 'struct_size' || name === 'reserved' || kind === 'pointer') continue;
-    if (!kind.endsWith('*')) {
+    if (!kind.includes('*')) {
       Object.defineProperty(Batch.prototype, name, {
         get() {
           return this.number(name);
@@ -89,7 +92,8 @@ export const BATCHES = Object.fromEntries(
     .map((name) => [name, lentStruct(name)]),
 );
 
-/** The linear system of an implicit step, for the time of the solver's call. */
+/** The linear system of an implicit step, for the time of the solver's call. Its arrays are copies, because csr() may
+ * let memory grow. */
 export class System {
   #machine;
   #at;
@@ -114,13 +118,16 @@ export class System {
     return this.#machine;
   }
   get node() {
-    return this.#here.array('i64', this.#arrays.node, this.rows);
+    return this.#here.array('i64', this.#arrays.node, this.rows).slice();
   }
   get component() {
-    return this.#here.array('i32', this.#arrays.component, this.rows);
+    return this.#here.array('i32', this.#arrays.component, this.rows).slice();
   }
   get position() {
-    return this.#here.components('f64', this.#arrays.position, this.#arrays.dim, this.rows, this.ld);
+    const { position, dim } = this.#arrays;
+    return Array.from({ length: dim }, (_, c) =>
+      this.#here.array('f64', position + 8 * c * this.ld, this.rows).slice(),
+    );
   }
   apply(x) {
     const machine = this.#here;

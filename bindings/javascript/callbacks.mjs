@@ -56,7 +56,8 @@ function addressOf(machine, type) {
       try {
         const slot = functions.get(user)?.deref();
         if (!slot) throw new Error('a callback was called after its owner was disposed of');
-        return machine.lend(() => ADAPTERS[type](machine, slot.run, ...values));
+        // calls of a callback on its own context are refused; those on another may let memory grow
+        return machine.lend(() => ADAPTERS[type](machine, slot.run, ...values), machine.contexts > 1);
       } catch (error) {
         if (results) return machine.keep(error);
         machine.keepLogged(error);
@@ -166,11 +167,16 @@ const ADAPTERS = {
   }),
   mpm_progress_fn: (m, run, info) => status(run(m.readStruct('mpm_step_info', info))),
   mpm_motion_fn: (m, run, t, dt, velocity, angular) =>
-    status(run(t, dt, m.array('f64', velocity, 3), m.array('f64', angular, 3))),
+    status(run(t, dt, m.loan.array('f64', velocity, 3, true), m.loan.array('f64', angular, 3, true))),
   mpm_inside_fn: (m, run, dim, n, ld, position, inside) =>
-    status(run(m.components('f64', position, dim, Number(n), Number(ld)), m.array('u8', inside, Number(n)))),
+    status(
+      run(
+        m.loan.components('f64', position, dim, Number(n), Number(ld)),
+        m.loan.array('u8', inside, Number(n), true),
+      ),
+    ),
   mpm_context_desc_log_fn: (m, run, level, text) => void run(level, m.text(text)),
-  mpm_write_fn: (m, run, data, bytes) => status(run(m.array('u8', data, Number(bytes)))),
+  mpm_write_fn: (m, run, data, bytes) => status(run(m.loan.array('u8', data, Number(bytes)))),
   mpm_solve_fn: (m, run, matrix, rhs, solution, tolerance, iterations) => {
     const system = new System(m, matrix, run.dim);
     try {

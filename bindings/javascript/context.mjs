@@ -30,6 +30,7 @@ export class Context extends Handle {
         machine.dropLogged();
         throw new MpmError(status, machine.text(machine.raw.mpm_status_name(status)), machine.text(text));
       }
+      machine.contexts++;
       return machine.read(out, 'pointer');
     });
     super(machine, null, 'context', at, [], functions);

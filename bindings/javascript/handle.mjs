@@ -135,7 +135,11 @@ export class Handle {
 
 const destroy = (name) => (machine, at) => machine.raw[name](at);
 const DESTROY = {
-  context: destroy('mpm_context_destroy'),
+  context(machine, at) {
+    const status = machine.raw.mpm_context_destroy(at);
+    if (!status) machine.contexts--;
+    return status;
+  },
   grid: destroy('mpm_grid_destroy'),
   material: destroy('mpm_material_destroy'),
   particles: destroy('mpm_particles_destroy'),
@@ -199,7 +203,8 @@ export function mapped(handle, name, values, use) {
         } = machine.readStruct('mpm_view', view);
         if (stride !== 1) throw new Error('the layout of the view is not known');
         const data = machine.read(view + structs.mpm_view.fields.data[0], 'pointer');
-        return use(machine.components(TYPES[type], data, components, count, apart), count);
+        const filled = (machine.read(view + structs.mpm_view.fields.access[0], 'i32') & C.MPM_WRITE) !== 0;
+        return use(machine.loan.components(TYPES[type], data, components, count, apart, filled), count);
       });
       failed = false;
       return result;

@@ -62,6 +62,60 @@ function converted(values, kind, what) {
   return out;
 }
 
+/** Arrays that are lent to a function, and have no entries when it has returned. They are memory itself where they can,
+ * which ends all its arrays at once when it grows. Where a call within the function may let it grow, or lends arrays and
+ * ends them, they are copies. */
+class Loan {
+  #machine;
+  #copies;
+  #buffer = null;
+  constructor(machine, copies) {
+    this.#machine = machine;
+    this.#copies = copies ? new Map() : null;
+  }
+  /** Arrays of the components of what lies at an address, `stride` entries from each other. What is written to
+   * them counts where they are to be filled. */
+  components(kind, at, components, count, stride, filled = false) {
+    if (this.#copies) return this.#copied(kind, at, components, count, stride, filled);
+    this.#buffer ??= this.#machine.memory.buffer;
+    return Array.from({ length: components }, (_, c) =>
+      this.#machine.array(kind, at + c * stride * WIDTHS[kind], count),
+    );
+  }
+  array(kind, at, count, filled) {
+    return this.components(kind, at, 1, count, 0, filled)[0];
+  }
+  #copied(kind, at, components, count, stride, filled) {
+    const key = [kind, at, components, count, stride].join();
+    let copy = this.#copies.get(key);
+    if (!copy) {
+      const all = new ARRAYS[kind](components * count);
+      const arrays = Array.from({ length: components }, (_, c) => all.subarray(c * count, (c + 1) * count));
+      const apart = stride * WIDTHS[kind];
+      const there = () => arrays.map((_, c) => this.#machine.array(kind, at + c * apart, count));
+      there().forEach((one, c) => arrays[c].set(one));
+      this.#copies.set(key, (copy = { arrays, there, filled, buffer: all.buffer }));
+    }
+    return copy.arrays;
+  }
+  /** Sees that no array has ended early: what is written to one without entries is lost without a word. */
+  check() {
+    if (this.#buffer && this.#buffer !== this.#machine.memory.buffer)
+      throw new Error(
+        'memory has grown in a function to which arrays were lent, and they have no entries since then: ' +
+          'make calls that need memory before',
+      );
+  }
+  end() {
+    if (this.#buffer) this.#machine.memory.grow(0); // a new buffer, which takes the old one's arrays away
+    if (!this.#copies?.size) return;
+    const copies = [...this.#copies.values()];
+    for (const { arrays, there } of copies.filter(({ filled }) => filled))
+      there().forEach((one, c) => one.set(arrays[c]));
+    structuredClone(null, { transfer: copies.map(({ buffer }) => buffer) });
+  }
+}
+
 /** Memory for the arguments of one call. Little ones lie in memory that is there already: a call that a callback makes
  * for a name and two numbers must not let memory grow, which would end the arrays that it was lent. */
 class Arguments {
@@ -154,7 +208,10 @@ export class Machine {
   #view = new DataView(new ArrayBuffer(0));
   #thrown = [];
   #logged;
-  #lent = 0;
+  /** What is lent to the function that runs. */
+  loan = null;
+  /** How many contexts there are. */
+  contexts = 0;
   constructor(exports) {
     this.raw = exports;
     this.memory = exports.memory;
@@ -168,10 +225,6 @@ export class Machine {
   }
   array(kind, at, count) {
     return new ARRAYS[kind](this.memory.buffer, at >>> 0, count);
-  }
-  /** Arrays of the components of what lies at an address, `stride` entries from each other. */
-  components(kind, at, components, count, stride) {
-    return Array.from({ length: components }, (_, c) => this.array(kind, at + c * stride * WIDTHS[kind], count));
   }
   write(at, kind, value, what = kind) {
     if (kind === 'f64') this.#data.setFloat64(at, real(value, what), true);
@@ -199,7 +252,7 @@ export class Machine {
   readStruct(type, at) {
     const out = {};
     for (const [name, [offset, kind, count]] of Object.entries(structs[type].fields)) {
-      if (kind === 'pointer' || kind.endsWith('*') || name === 'struct_size' || name === 'reserved') continue;
+      if (kind === 'pointer' || kind.includes('*') || name === 'struct_size' || name === 'reserved') continue;
       out[name] =
         count === undefined
           ? this.read(at + offset, kind)
@@ -212,16 +265,20 @@ export class Machine {
     const bytes = new Uint8Array(this.memory.buffer, at >>> 0);
     return decoder.decode(bytes.subarray(0, bytes.indexOf(0)));
   }
-  /** Lends arrays for the time of a function: afterwards they have no entries. */
-  lend(use) {
-    this.#lent++;
+  /** Lends arrays for the time of a function; as copies within another such function, or where that is said. */
+  lend(use, copies = false) {
+    const outer = this.loan;
+    const loan = new Loan(this, copies || outer !== null);
+    this.loan = loan;
     try {
       const result = use();
       if (typeof result?.then === 'function')
         throw new TypeError('arrays are lent to a function that ends before it returns: it cannot be async');
+      loan.check();
       return result;
     } finally {
-      if (--this.#lent === 0) this.memory.grow(0); // a new buffer, which takes the old one's arrays away
+      this.loan = outer;
+      loan.end();
     }
   }
   arguments(use) {

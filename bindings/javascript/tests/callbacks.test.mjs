@@ -1,7 +1,7 @@
 // Functions of the host: what they see, what they change, and what becomes of what they throw.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { C, MpmError } from 'libmpm';
+import { C, MpmError, load } from 'libmpm';
 import { mpm, scene } from './library.mjs';
 
 test('forces, accelerations and gravity agree', () => {
@@ -146,26 +146,95 @@ test('batches end with the call', () => {
   assert.throws(() => batch.n + batch.mass.length, /for the time of the callback/);
 });
 
+/** Takes so much memory that WebAssembly's grows, as calls on other contexts may. */
+function grow({ raw }) {
+  raw.free(raw.malloc(raw.memory.buffer.byteLength));
+}
+
 test('a callback that grows the memory by another context goes on', () => {
   const { stepper } = scene();
   const plain = scene();
+  const push = (batch, [fx, fy], x) => {
+    for (let i = 0; i < batch.n; i++) {
+      fx[i] += x[i];
+      fy[i] -= batch.mass[i];
+    }
+  };
   let done = false;
   stepper.setForce((batch, add) => {
-    if (!done) {
-      const context = mpm.context();
-      const grid = context.grid({ dim: 2, cells: [512, 512], spacing: [1, 1] });
-      const set = context.particles(grid, context.material('neo_hookean', { E: 1, nu: 0.2, density: 1 }));
-      set.fillBox([1, 1], [300, 300], [2, 2]);
-      for (const one of [set, grid, context]) one.dispose();
-      done = true;
-    }
+    const [x] = batch.position;
+    if (!done) grow(mpm);
+    done = true;
     assert.equal(batch.mass.length, batch.n);
+    push(batch, add, x);
   });
+  plain.stepper.setForce((batch, add) => push(batch, add, batch.position[0]));
   for (let k = 0; k < 3; k++) {
     stepper.step(1e-3);
     plain.stepper.step(1e-3);
   }
   assert.equal(stepper.hash(), plain.stepper.hash());
+});
+
+test('what is lent within a callback ends with the inner one, and the outer one goes on', () => {
+  const law = {
+    density: 1e3,
+    stress(batch) {
+      batch.stress_new.forEach((one, c) => one.fill(c === 0 ? -10 : 0));
+      batch.wave_speed.fill(1);
+    },
+  };
+  const [outer, inner, plain, other] = [scene(), scene({ law }), scene({ law }), scene()];
+  let kept;
+  let mapped;
+  const push = (batch, [, fy]) => fy.forEach((_, i) => (fy[i] += batch.mass[i]));
+  inner.stepper.setForce((batch, add) => {
+    push(batch, add);
+    kept ??= [batch.id, ...batch.position, ...add, ...batch.field('stress', 4)];
+  });
+  plain.stepper.setForce(push);
+  let steps = 0;
+  outer.stepper.setForce((batch, add) => {
+    const lent = [batch.id, batch.mass, ...batch.position, ...add, ...batch.field('velocity', 2)];
+    const values = lent.map((one) => Array.from(one));
+    if (!steps++) inner.stepper.step(1e-3);
+    inner.set.map('velocity', C.MPM_READ | C.MPM_WRITE, ([vx]) => {
+      mapped = vx;
+      vx.fill(0.25);
+    });
+    assert.deepEqual([kept, mapped].flat().map(({ length }) => length), Array(kept.length + 1).fill(0));
+    assert.deepEqual(lent.map((one) => Array.from(one)), values);
+    push(batch, add);
+  });
+  other.stepper.setForce(push);
+  outer.stepper.step(1e-3);
+  other.stepper.step(1e-3);
+  assert.equal(outer.stepper.hash(), other.stepper.hash());
+  plain.stepper.step(1e-3);
+  plain.set.map('velocity', C.MPM_READ | C.MPM_WRITE, ([vx]) => vx.fill(0.25));
+  assert.equal(inner.stepper.hash(), plain.stepper.hash());
+});
+
+test('arrays that end early are an error', async () => {
+  const library = await load(mpm.module);
+  const { set, stepper } = scene({ library });
+  assert.throws(() => set.map('velocity', C.MPM_WRITE, () => grow(library)), /memory has grown/);
+  const mine = new Error('mine');
+  assert.throws(
+    () =>
+      set.map('velocity', C.MPM_READ, () => {
+        grow(library);
+        throw mine;
+      }),
+    (error) => error === mine,
+  );
+  const before = stepper.hash();
+  stepper.setForce(() => grow(library));
+  assert.throws(() => stepper.step(1e-3), /memory has grown/);
+  assert.equal(stepper.hash(), before);
+  stepper.setForce(null);
+  stepper.setProgress(() => grow(library)); // to which no arrays are lent
+  stepper.step(1e-3);
 });
 
 test('prescribed velocities and hooks', () => {

@@ -229,7 +229,14 @@ test('what is lent is taken back, whatever the memory does', () => {
   });
   assert.ok(sum > 0);
   assert.equal(kept[0].length, 0);
-  set.map('velocity', C.MPM_READ | C.MPM_WRITE, ([x]) => x.fill(-1));
+  set.map('velocity', C.MPM_READ | C.MPM_WRITE, ([x]) => {
+    const [within] = set.map('velocity', C.MPM_READ, ([same]) => {
+      x.fill(-1);
+      return [same];
+    });
+    assert.equal(within.length, 0);
+    assert.equal(x[0], -1);
+  });
   const v = set.get('velocity');
   assert.equal(v[0], -1);
   assert.equal(v[set.count], 0.5);
