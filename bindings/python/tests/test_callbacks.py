@@ -175,16 +175,21 @@ class Callbacks(unittest.TestCase):
             stepper.step(1e-3)
         self.assertEqual([getattr(one, "status", one) for one in told], [mpm.E_STATE])
 
-    def test_raised_arrays_are_an_error(self):
+    def test_raised_arrays_arrive(self):
         _, stepper = block()
+        at = []
 
         def force(batch, add):
+            at.append(batch.position.copy())
             raise Trouble(batch.position)
 
         stepper.set_force(force)
-        with self.assertRaisesRegex(RuntimeError, "kept an array.*raised Trouble") as caught:
+        with self.assertRaises(Trouble) as caught:
             stepper.step(1e-3)
-        self.assertIsNone(caught.exception.__context__)
+        np.testing.assert_array_equal(caught.exception.args[0], at[0])
+
+    def test_what_is_no_function(self):
+        _, stepper = block()
         with self.assertRaisesRegex(TypeError, "5 is no function"):
             stepper.set_force(5)
         with self.assertRaisesRegex(TypeError, "5 is no function"):
@@ -249,14 +254,53 @@ class Callbacks(unittest.TestCase):
         self.assertTrue(caught.exception.smaller_dt_may_do)
         self.assertLessEqual(stepper.advance(1e-3).dt, 1e-4)
 
-    def test_kept_arrays_are_an_error(self):
+    def test_kept_arrays_stay(self):
+        """They keep their values, whatever becomes of the state; what is written to them later goes nowhere."""
+        one, stepper = block()
+        _, other = block()
+        one["velocity"] = (0.5, 0.25)
+        other.sets[0]["velocity"] = (0.5, 0.25)
+        kept, copies = [], []
+
+        def push(batch, add):
+            add[:, 0] += batch.mass
+
+        def force(batch, add):
+            push(batch, add)
+            arrays = (batch.position, batch.velocity, batch.mass, batch.id, batch.field("stress"),
+                      batch.position[1:], add)
+            kept.append(arrays)
+            copies.append([array.copy() for array in arrays])
+
+        stepper.set_force(force)
+        stepper.step(1e-3)
+        stepper.set_force(push)
+        other.set_force(push)
+        other.step(1e-3)
+        for arrays in kept:
+            self.assertFalse(any(array.flags.writeable for array in arrays[:-1]))
+            np.testing.assert_array_equal(arrays[-1][:, 0], arrays[2])
+            arrays[-1][...] = np.nan
+        for arrays in copies:
+            arrays[-1][...] = np.nan
+        for each in stepper, other:
+            for _ in range(20):
+                each.step(1e-3)
+        self.assertEqual(stepper.hash, other.hash)
+        stepper.close()
+        one.close()
+        for arrays, same in zip(kept, copies):
+            for array, copy in zip(arrays, same):
+                np.testing.assert_array_equal(array, copy)
+
+    def test_kept_batches_are_empty(self):
         _, stepper = block()
         kept = []
-        stepper.set_force(lambda batch, add: kept.append(batch.position))
-        with self.assertRaisesRegex(RuntimeError, "kept an array"):
-            stepper.step(1e-3)
-        stepper.set_force(lambda batch, add: kept.append(batch.position.copy()))
+        stepper.set_force(lambda batch, add: kept.append((batch, batch.mass)[0]))
         stepper.step(1e-3)
+        for name in ("mass", "position", "n"):
+            with self.assertRaises(AttributeError):
+                getattr(kept[0], name)
 
     def test_fields_in_batches(self):
         one, stepper = block()
@@ -513,6 +557,22 @@ class Solver(unittest.TestCase):
         np.testing.assert_allclose(positions[0], positions[1], rtol=1e-10)
         self.assertEqual(seen[0][1], 2)
         self.assertGreater(len(stepper.residuals()), 0)
+
+    def test_kept_systems_are_refused(self):
+        kept = []
+
+        def solve(system, rhs, guess, tolerance):
+            kept.append(system)
+
+        one, stepper = block(cells=6, scheme=mpm.NEWMARK, linear_solver=mpm.SOLVER_HOST, gravity=(0, -10))
+        stepper.set_linear_solver(solve)
+        with self.assertRaises(mpm.StepError):
+            stepper.step(1e-2)
+        with self.assertRaisesRegex(mpm.Error, "E_ARG"):  # its memory goes with the stepper
+            kept[0].apply(np.zeros(kept[0].rows))
+        with self.assertRaisesRegex(mpm.Error, "E_ARG"):
+            kept[0].matrix
+        self.assertEqual(kept[0].position.shape, (kept[0].rows, 2))
 
     def test_exceptions(self):
         def solve(system, rhs, guess, tolerance):

@@ -1,6 +1,6 @@
 """Arrays of numpy over the library's memory, and numbers of Python as the library wants them."""
 import ctypes
-import traceback
+import math
 
 import numpy as np
 
@@ -104,8 +104,8 @@ def lend(view, owner):
 
 
 class Batch:
-    """Items that a callback is shown: arrays (n, components) over memory that is the library's for the time of the call.
-    Who wants to keep an array copies it."""
+    """Items that a callback is shown, in arrays (n, components): copies, which may be kept, because the library's memory
+    is lent for the time of the call alone. Those that the callback fills are written back when it has returned."""
 
     #: components of the fields that are arrays, as a function of the batch; tensors are 3 x 3
     _arrays = {}
@@ -117,7 +117,7 @@ class Batch:
 
     def __init__(self, pointer, kinds=tuple):
         self._struct = pointer.contents
-        self._leases = []
+        self._filled = []
         self._kinds = kinds
 
     def __getattr__(self, name):
@@ -129,26 +129,25 @@ class Batch:
         if at:
             writable = name in self._written
             if components is tensor:
-                array = self._raw(at, 9, writable=writable).reshape(3, 3, -1)[:, :, :self._struct.n].transpose(2, 0, 1)
+                array = self._raw(at, 9, writable=writable).reshape(3, 3, -1).transpose(2, 0, 1)
             else:
                 kind = np.int64 if name in self._integers else np.uint8 if name in self._bytes else np.float64
                 array = self._show(at, components(self._struct), kind, writable, components is not scalar)
-        self.__dict__[name] = array
+        self.__dict__[name] = array  # one copy: what is written to a second one would be lost
         return array
 
-    def _raw(self, at, components, dtype=np.float64, writable=False):
-        """What lies at an address as [components][ld], inert slots included."""
-        dtype, ld = np.dtype(dtype), self._struct.ld
-        return self._lend(at, dtype, components, ld, ld, 1, writable)
-
-    def _lend(self, at, dtype, *shape):
-        lease = _view.Lease(at, dtype.char if dtype.char != "l" else "q", dtype.itemsize, *shape)
-        self._leases.append(lease)
-        return np.asarray(memoryview(lease))
+    def _raw(self, at, components, dtype=np.float64, writable=False, stride=None):
+        """What lies at an address as [components][n]."""
+        dtype, n = np.dtype(dtype), self._struct.n
+        place = at, components, n * dtype.itemsize, (stride or self._struct.ld) * dtype.itemsize
+        copy = _view.copied(*place, writable)
+        if writable:
+            self._filled.append((copy, *place))
+        return np.frombuffer(copy, dtype).reshape(components, n)
 
     def _show(self, at, components, dtype=np.float64, writable=False, wide=True):
         """The same as (n, components), or (n,) for one that is not wide."""
-        array = self._raw(at, components, dtype, writable)[:, :self._struct.n]
+        array = self._raw(at, components, dtype, writable)
         return array.T if wide else array[0]
 
     def field(self, name):
@@ -162,35 +161,21 @@ class Batch:
         status = lib.mpm_batch_field(self._struct.lookup, name.encode(), ctypes.byref(data), ctypes.byref(stride))
         if status:
             raise LookupError(f"the set does not have '{name}' now ({_api.Status(status).name})")
-        dtype, n = TYPES[kind], self._struct.n
-        array = self._lend(data.value, dtype, components, n, stride.value, 1, False)
+        array = self._raw(data.value, components, TYPES[kind], stride=stride.value)
         return array[0] if components == 1 else array.T
 
     def _run(self, fn, *outputs):
-        """Calls fn with the batch and with arrays of its outputs, (address, dtype, shape): (n, ...) over [...][ld]. Then the
-        loan ends: an array that lives on would show memory that is gone, which is an error of fn. What fn raises has no
-        variables in its frames, because they may be such arrays; if it keeps one all the same, that error takes its place."""
+        """Calls fn with the batch and with arrays (n, ...) of its outputs, (address, dtype, shape)."""
         arrays = []
         for at, dtype, *shape in outputs:
-            array = self._raw(at, int(np.prod(shape)), dtype, True).reshape(*shape, -1)[..., :self._struct.n]
+            array = self._raw(at, math.prod(shape), dtype, True).reshape(*shape, self._struct.n)
             arrays.append(np.moveaxis(array, -1, 0))
-        array = said = raised = None
         try:
             said = fn(self, *arrays)
-        except BaseException as one:
-            traceback.clear_frames(one.__traceback__)
-            raised = one
-        arrays.clear()
-        leases = self._leases
-        self.__dict__ = {"_struct": None, "_leases": []}
-        if any(lease.exports for lease in leases):
-            raise RuntimeError("a callback has kept an array of its batch, whose memory ends with the call; keep a copy()" +
-                               (f"; it raised {type(raised).__name__}" if raised is not None else ""))
-        if raised is not None:
-            try:
-                raise raised
-            finally:
-                raised = None  # which has this frame
+            for filled in self._filled:
+                _view.put_back(*filled)
+        finally:
+            self.__dict__ = {"_struct": None}  # whoever keeps the batch has nothing to read
         return said
 
 

@@ -1,5 +1,6 @@
 """Materials: laws that are built in, by name, and laws that are written in Python."""
 import ctypes
+import functools
 import weakref
 
 import numpy as np
@@ -89,18 +90,18 @@ class Material(Handle):
 class MaterialBatch(Batch):
     """Particles that a law is asked about: n, dt, t, id (< 0: an inert slot), F, F_inc and L (n, 3, 3), stress (n, 6),
     state (n, state_count), position (n, dim). To be filled: stress_new, state_new, wave_speed, and where the law has them
-    kinematic_viscosity and energy. Arrays end with the call."""
+    kinematic_viscosity and energy."""
 
     _arrays = {"id": scalar, "F": tensor, "F_inc": tensor, "L": tensor, "stress": lambda s: 6, "stress_new": lambda s: 6,
                "state": lambda s: s.state_count, "state_new": lambda s: s.state_count, "wave_speed": scalar,
                "kinematic_viscosity": scalar, "energy": scalar}
     _written = ("stress_new", "state_new", "wave_speed", "kinematic_viscosity", "energy")
 
-    @property
+    @functools.cached_property
     def state(self):
         return self._states("state", False)
 
-    @property
+    @functools.cached_property
     def state_new(self):
         return self._states("state_new", True)
 
@@ -109,7 +110,7 @@ class MaterialBatch(Batch):
             raise LookupError("the law has no state variables")
         return self._show(getattr(self._struct, name), self._struct.state_count, writable=writable)
 
-    @property
+    @functools.cached_property
     def position(self):
         """Positions at the start of the step, (n, dim)."""
         dims = {kinds["position"][1] for kinds in self._kinds()} or {3}

@@ -289,7 +289,10 @@ class Stepper(Handle):
         def call(_, operator, rhs, solution, tolerance, iterations):
             system = System(operator, self.dim)
             vector_at = lambda at: np.ctypeslib.as_array((ctypes.c_double * system.rows).from_address(at))
-            said = fn(system, vector_at(rhs).copy(), vector_at(solution).copy(), tolerance)
+            try:
+                said = fn(system, vector_at(rhs).copy(), vector_at(solution).copy(), tolerance)
+            finally:
+                system._operator = None  # it is gone; the library refuses calls on none
             if said is None:
                 return 1
             answer, count = said if isinstance(said, tuple) else (said, 1)

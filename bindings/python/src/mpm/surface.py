@@ -14,7 +14,7 @@ _VECTORS = ("traction", "dead_traction", "velocity")
 
 class MarkerBatch(Batch):
     """Markers for which tractions or velocities are wanted: n, dim, t, dt, id (n,), position, area (out of the material), displacement and
-    velocity (n, dim), reference_area (n,). Arrays end with the call."""
+    velocity (n, dim), reference_area (n,)."""
 
     _arrays = {"id": scalar, "position": vector, "area": vector, "reference_area": scalar, "displacement": vector,
                "velocity": vector}
