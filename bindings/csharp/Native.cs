@@ -1464,6 +1464,13 @@ namespace Mpm {
     public double surfaces_total;
     /// <summary>dissipated work.</summary>
     public double dissipated_total;
+
+    /// <summary>Ready to be filled: zeros, and struct_size.</summary>
+    public static HeatInfo Empty() {
+      var it = new HeatInfo();
+      it.struct_size = (uint)sizeof(HeatInfo);
+      return it;
+    }
   }
 
   /// <summary>The functions of C.</summary>

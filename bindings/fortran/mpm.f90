@@ -2898,13 +2898,14 @@ module mpm
     module procedure init_mpm_adaption_desc
     module procedure init_mpm_adaption_info
     module procedure init_mpm_heat_desc
+    module procedure init_mpm_heat_info
   end interface mpm_init
 
   private :: init_mpm_view, init_mpm_balance_desc, init_mpm_parallel_info, init_mpm_context_desc, init_mpm_grid_desc, &
       init_mpm_material_batch, init_mpm_material_desc, init_mpm_operator_info, init_mpm_stepper_desc, &
       init_mpm_step_info, init_mpm_advance_desc, init_mpm_profile, init_mpm_contact_desc, init_mpm_contact_info, &
       init_mpm_obstacle_desc, init_mpm_surface_desc, init_mpm_adaption_desc, init_mpm_adaption_info, &
-      init_mpm_heat_desc
+      init_mpm_heat_desc, init_mpm_heat_info
 
 contains
 
@@ -3118,5 +3119,22 @@ contains
     type(mpm_heat_desc), intent(out) :: it
     if (mpm_heat_desc_init(it, int(c_sizeof(it), c_int32_t)) /= MPM_OK) error stop "libmpm is older than the module mpm"
   end subroutine init_mpm_heat_desc
+
+  subroutine init_mpm_heat_info(it)
+    type(mpm_heat_info), intent(out) :: it
+    it%struct_size = int(c_sizeof(it), c_int32_t)
+    it%iterations = 0
+    it%heat = 0.0_c_double
+    it%gained = 0.0_c_double
+    it%walls = 0.0_c_double
+    it%sources = 0.0_c_double
+    it%surfaces = 0.0_c_double
+    it%dissipated = 0.0_c_double
+    it%gained_total = 0.0_c_double
+    it%walls_total = 0.0_c_double
+    it%sources_total = 0.0_c_double
+    it%surfaces_total = 0.0_c_double
+    it%dissipated_total = 0.0_c_double
+  end subroutine init_mpm_heat_info
 
 end module mpm

@@ -6,8 +6,8 @@ NOTE = "Generated from the headers of libmpm by `make api`; not to be edited."
 
 
 #: Structs that the library fills, once the caller has set struct_size; a batch of the material driver is one that both fill.
-OUTPUTS = ("mpm_view", "mpm_operator_info", "mpm_step_info", "mpm_profile", "mpm_contact_info", "mpm_adaption_info", "mpm_parallel_info",
-           "mpm_material_batch")
+OUTPUTS = ("mpm_view", "mpm_operator_info", "mpm_step_info", "mpm_profile", "mpm_contact_info", "mpm_adaption_info", "mpm_heat_info",
+           "mpm_parallel_info", "mpm_material_batch")
 
 
 def is_descriptor(struct):

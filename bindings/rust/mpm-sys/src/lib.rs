@@ -1925,6 +1925,16 @@ pub struct mpm_heat_info {
     pub dissipated_total: f64,
 }
 
+impl Default for mpm_heat_info {
+    /// Ready to be filled: zeros, and `struct_size`.
+    fn default() -> Self {
+        // SAFETY: zeros are a value of every field.
+        let mut out: Self = unsafe { std::mem::zeroed() };
+        out.struct_size = size_of::<Self>() as u32;
+        out
+    }
+}
+
 extern "C" {
     /// The version of the library that runs, as 0xMMmmpp, to be compared with MPM_VERSION. May be called from any thread
     /// at any time.

@@ -44,7 +44,10 @@ impl Core {
                 "another call on the context is under way: this one was made in a callback, or on another thread",
             ));
         }
-        Ok(Entry { core: self.clone() })
+        let entry = Entry { core: self.clone() };
+        // a view that was given back while another thread called is no more
+        entry.bury_waiting();
+        Ok(entry)
     }
 
     /// Frees something: now, or after the call that is under way. What it needs must be part of it.
@@ -103,19 +106,25 @@ impl Entry {
     }
 }
 
+impl Entry {
+    fn bury_waiting(&self) {
+        while self.core.waiting.load(SeqCst) > 0 {
+            let burials = {
+                let mut waiting = self.core.burials.lock().unwrap();
+                self.core.waiting.store(0, SeqCst);
+                std::mem::take(&mut *waiting)
+            };
+            for burial in burials {
+                burial();
+            }
+        }
+    }
+}
+
 impl Drop for Entry {
     fn drop(&mut self) {
         loop {
-            while self.core.waiting.load(SeqCst) > 0 {
-                let burials = {
-                    let mut waiting = self.core.burials.lock().unwrap();
-                    self.core.waiting.store(0, SeqCst);
-                    std::mem::take(&mut *waiting)
-                };
-                for burial in burials {
-                    burial();
-                }
-            }
+            self.bury_waiting();
             self.core.busy.store(false, SeqCst);
             if self.core.waiting.load(SeqCst) == 0 || self.core.busy.swap(true, SeqCst) {
                 return;
@@ -131,5 +140,24 @@ unsafe impl<T> Send for Sent<T> {}
 impl<T> Sent<T> {
     pub fn get(&self) -> *mut T {
         self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_waits_is_freed_before_the_next_call() {
+        let core = Core::new(std::ptr::null_mut(), Arc::default(), Vec::new());
+        let freed = Arc::new(AtomicBool::new(false));
+        let done = freed.clone();
+        core.busy.store(true, SeqCst); // as while another thread calls
+        core.bury(move || done.store(true, SeqCst));
+        assert!(!freed.load(SeqCst));
+        core.busy.store(false, SeqCst);
+        let entry = core.enter().unwrap();
+        assert!(freed.load(SeqCst), "a view that was given back was still lent in the next call");
+        drop(entry);
     }
 }

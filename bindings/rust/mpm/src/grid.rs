@@ -13,6 +13,8 @@ pub(crate) struct GridCore {
     pub context: Arc<Core>,
     pub handle: *mut sys::mpm_grid,
     pub dim: usize,
+    /// Whether it is of `MPM_PLANE_STRESS`.
+    pub sheet: bool,
 }
 
 // SAFETY: the handle is used by an Entry only.
@@ -29,7 +31,8 @@ impl Grid {
         // SAFETY: the descriptor is whole.
         let status = unsafe { sys::mpm_grid_create(context.core.handle, &desc, &mut handle) };
         entry.done(status)?;
-        Ok(Grid { core: Arc::new(GridCore { context: context.core.clone(), handle, dim: desc.dim as usize }) })
+        let (context, dim, sheet) = (context.core.clone(), desc.dim as usize, desc.geometry == sys::MPM_PLANE_STRESS);
+        Ok(Grid { core: Arc::new(GridCore { context, handle, dim, sheet }) })
     }
 
     /// The dimension, 1 to 3.

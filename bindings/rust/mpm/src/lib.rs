@@ -29,6 +29,31 @@
 //! surfaces that it was given, and gives them back by [`Stepper::remove`] and its like. What an object was made with lives as
 //! long as it does, so the order in which values go does not matter.
 //!
+//! What a stepper owns it lends as [`LentParticles`], [`LentObstacle`] and [`LentSurface`], in which a [`Particles`], an
+//! [`Obstacle`] or a [`Surface`] has its methods. They have no size: a set is changed where it is, and not exchanged for
+//! another, whose functions the stepper does not know.
+//!
+//! ```compile_fail,E0277
+//! # use mpm::*;
+//! # fn exchange(stepper: &mut Stepper, set: SetKey, mut other: Particles) {
+//! std::mem::swap(stepper.particles_mut(set), &mut other);
+//! # }
+//! ```
+//!
+//! ```compile_fail,E0277
+//! # use mpm::*;
+//! # fn exchange(stepper: &mut Stepper, obstacle: ObstacleKey, mut other: Obstacle) {
+//! std::mem::swap(stepper.obstacle_mut(obstacle), &mut other);
+//! # }
+//! ```
+//!
+//! ```compile_fail,E0277
+//! # use mpm::*;
+//! # fn exchange(stepper: &mut Stepper, surface: SurfaceKey, mut other: Surface) {
+//! std::mem::swap(stepper.surface_mut(surface), &mut other);
+//! # }
+//! ```
+//!
 //! # Views
 //!
 //! A [`View`] borrows the set that it looks into. A step while one is out does not compile:
@@ -96,7 +121,7 @@
 //! # The rest
 //!
 //! [`sys`] is the interface of C, with all comments of the headers; `as_ptr()` of each object gives its handle there. What
-//! there is there alone: heat, problems in several parts, memory of the host, and fields of other sizes in callbacks.
+//! there is there alone: problems in several parts, memory of the host, and fields of other sizes in callbacks.
 #![warn(missing_docs)]
 
 pub use mpm_sys as sys;
@@ -131,12 +156,12 @@ pub use grid::Grid;
 pub use law::{Law, MaterialBatch, Response};
 pub use linear::{LinearSystem, Rows};
 pub use material::{Material, Parameter, Path, StateVariable, Updated};
-pub use obstacle::{DistanceFn, Obstacle, ObstacleDesc, Pose};
-pub use particles::{FieldInfo, Filled, Particles};
+pub use obstacle::{DistanceFn, LentObstacle, Obstacle, ObstacleDesc, Pose};
+pub use particles::{FieldInfo, Filled, LentParticles, Particles};
 pub use series::Series;
 pub use staged::StagedStep;
 pub use stepper::{ObstacleKey, SetKey, Stepper, SurfaceKey};
-pub use surface::Surface;
+pub use surface::{LentSurface, Surface};
 pub use view::{Element, View, ViewMut};
 
 /// Box, cells and basis of a grid.
@@ -153,6 +178,10 @@ pub type ContactDesc = sys::mpm_contact_desc;
 pub type AdaptionDesc = sys::mpm_adaption_desc;
 /// What splitting and merging have done to a set.
 pub type AdaptionInfo = sys::mpm_adaption_info;
+/// The heat of a set.
+pub type HeatDesc = sys::mpm_heat_desc;
+/// Where heat came from.
+pub type HeatInfo = sys::mpm_heat_info;
 /// What a step did, or the state as it is.
 pub type StepInfo = sys::mpm_step_info;
 /// What two bodies did to each other.

@@ -2,6 +2,7 @@
 use crate::callback::{alone, shared, user_of, Owned};
 use crate::entry::{Core, Sent};
 use crate::{sys, Columns, ContactDesc, ContactInfo, Context, DistanceBatch, Distances, Flow, Result};
+use std::ops::{Deref, DerefMut};
 use std::os::raw::c_void;
 use std::sync::Arc;
 
@@ -83,17 +84,35 @@ impl ObstacleDesc {
     }
 }
 
-/// A rigid body without particles. A stepper takes it over, and lends it.
-pub struct Obstacle {
+/// A rigid body without particles. A stepper takes it over, and lends it as [`LentObstacle`], which has what there is to
+/// be done with it.
+pub struct Obstacle(Box<LentObstacle>);
+
+/// An obstacle where it is. It has no size, so that nobody exchanges the obstacle of a stepper for another.
+pub struct LentObstacle<S: ?Sized = [()]> {
     pub(crate) context: Arc<Core>,
     pub(crate) handle: *mut sys::mpm_obstacle,
     distance: Option<Owned<DistanceFn>>,
     motion: Option<Owned<MotionFn>>,
+    _sizeless: S,
 }
 
 // SAFETY: the handle is used by an Entry only, and so is the function of the motion.
-unsafe impl Send for Obstacle {}
-unsafe impl Sync for Obstacle {}
+unsafe impl Send for LentObstacle {}
+unsafe impl Sync for LentObstacle {}
+
+impl Deref for Obstacle {
+    type Target = LentObstacle;
+    fn deref(&self) -> &LentObstacle {
+        &self.0
+    }
+}
+
+impl DerefMut for Obstacle {
+    fn deref_mut(&mut self) -> &mut LentObstacle {
+        &mut self.0
+    }
+}
 
 impl Obstacle {
     /// Makes an obstacle.
@@ -124,9 +143,12 @@ impl Obstacle {
         // SAFETY: the descriptor is whole, and the function outlives the obstacle.
         let status = unsafe { sys::mpm_obstacle_create(core.handle, &raw, &mut handle) };
         entry.done(status)?;
-        Ok(Obstacle { context: core.clone(), handle, distance, motion: None })
+        let (context, motion) = (core.clone(), None);
+        Ok(Obstacle(Box::new(LentObstacle { context, handle, distance, motion, _sizeless: [] })))
     }
+}
 
+impl LentObstacle {
     /// Sets what gives velocity and angular velocity of the step from `t` over `dt`, both preset to the present ones.
     pub fn set_motion(
         &mut self,
@@ -218,7 +240,7 @@ impl Obstacle {
     }
 }
 
-impl Drop for Obstacle {
+impl<S: ?Sized> Drop for LentObstacle<S> {
     fn drop(&mut self) {
         let (handle, keep) = (Sent(self.handle), (self.distance.take(), self.motion.take()));
         self.context.bury(move || {

@@ -2,7 +2,7 @@
 use crate::callback::{alone, Owned};
 use crate::entry::Core;
 use crate::error::c_texts;
-use crate::{sys, Error, Particles, Result, Stepper};
+use crate::{sys, Error, LentParticles, Result, Stepper};
 use std::io::Write;
 use std::os::raw::c_void;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ fn written(
     })
 }
 
-impl Particles {
+impl LentParticles {
     /// Copies fields of all particles as floats, `[particle][component]`: one particle after the other, without inert
     /// slots. `order` is `MPM_BY_ID`, or `MPM_LIBRARY_ORDER`, which is faster: see `mpm_particles_get_f32()`.
     pub fn get_f32(&self, fields: &[&str], order: i32) -> Result<Vec<f32>> {
@@ -49,7 +49,7 @@ impl Particles {
         Ok(out)
     }
 
-    /// Gives a writer the bytes of the file that [`Particles::write`] would write.
+    /// Gives a writer the bytes of the file that [`Self::write`] would write.
     pub fn write_to(&self, out: impl Write, fields: &[&str]) -> Result<()> {
         let (_held, names) = c_texts(fields)?;
         // SAFETY: all texts end with a zero, and the writer is used during the call.

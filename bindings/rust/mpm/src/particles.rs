@@ -5,20 +5,39 @@ use crate::error::{c_text, c_texts, text_of};
 use crate::view::Lent;
 use crate::{callback::Slot, Flow};
 use crate::{sys, Element, Error, Grid, Material, Result, View, ViewMut};
+use std::ops::{Deref, DerefMut};
 use std::os::raw::c_void;
 use std::sync::Arc;
 
-/// A set of particles of one material on one grid. A stepper takes it over, and lends it.
-pub struct Particles {
+/// A set of particles of one material on one grid. A stepper takes it over, and lends it as [`LentParticles`], which has
+/// what there is to be done with it.
+pub struct Particles(Box<LentParticles>);
+
+/// A set of particles where it is. It has no size, so that nobody exchanges the set of a stepper for another.
+pub struct LentParticles<S: ?Sized = [()]> {
     pub(crate) context: Arc<Core>,
     pub(crate) handle: *mut sys::mpm_particles,
     grid: Grid,
     material: Material,
+    _sizeless: S,
 }
 
 // SAFETY: the handle is used by an Entry only.
-unsafe impl Send for Particles {}
-unsafe impl Sync for Particles {}
+unsafe impl Send for LentParticles {}
+unsafe impl Sync for LentParticles {}
+
+impl Deref for Particles {
+    type Target = LentParticles;
+    fn deref(&self) -> &LentParticles {
+        &self.0
+    }
+}
+
+impl DerefMut for Particles {
+    fn deref_mut(&mut self) -> &mut LentParticles {
+        &mut self.0
+    }
+}
 
 /// What a fill has added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,9 +74,12 @@ impl Particles {
         let status =
             unsafe { sys::mpm_particles_create(context.handle, grid.as_ptr(), material.as_ptr(), &mut handle) };
         entry.done(status)?;
-        Ok(Particles { context, handle, grid: grid.clone(), material: material.clone() })
+        let (grid, material) = (grid.clone(), material.clone());
+        Ok(Particles(Box::new(LentParticles { context, handle, grid, material, _sizeless: [] })))
     }
+}
 
+impl LentParticles {
     /// The dimension of the grid.
     pub fn dim(&self) -> usize {
         self.grid.dim()
@@ -227,7 +249,7 @@ impl Particles {
         entry.done(status)
     }
 
-    /// Packs the particles with the given ids in this order, or all by ascending id, for [`Particles::unpack`]: see
+    /// Packs the particles with the given ids in this order, or all by ascending id, for [`Self::unpack`]: see
     /// `mpm_particles_pack()`.
     pub fn pack(&self, ids: Option<&[i64]>) -> Result<Vec<u8>> {
         let (n, first) = ids.map_or((self.len(), std::ptr::null()), |ids| (ids.len(), ids.as_ptr()));
@@ -245,7 +267,7 @@ impl Particles {
         Ok(out)
     }
 
-    /// Adds particles that [`Particles::pack`] has given, of this set or of another: all or none.
+    /// Adds particles that [`Self::pack`] has given, of this set or of another: all or none.
     pub fn unpack(&mut self, packed: &[u8]) -> Result<()> {
         let entry = self.context.enter()?;
         // SAFETY: the bytes are as many as is said.
@@ -292,6 +314,11 @@ impl Particles {
 
     /// Lends a field for reading. Several may be out.
     pub fn map<T: Element>(&self, field: &str) -> Result<View<'_, T>> {
+        if self.grid.core.sheet && field == "deformation_gradient" {
+            // a sheet's strain across follows from its stress, which the library may find when it is asked for: not
+            // while a view shows the strain
+            self.lend::<f64>("volume", sys::MPM_READ)?;
+        }
         Ok(View::of(self.lend::<T>(field, sys::MPM_READ)?))
     }
 
@@ -323,7 +350,7 @@ impl Particles {
         of.copied(&self.context, sys::mpm_particles_get, self.handle)
     }
 
-    /// Sets a field of all particles, laid out as in [`Particles::get`].
+    /// Sets a field of all particles, laid out as in [`Self::get`].
     pub fn set<T: Element>(&mut self, field: &str, values: &[T]) -> Result<()> {
         self.overwrite(field, self.len(), None, values)
     }
@@ -393,7 +420,7 @@ impl Particles {
     }
 }
 
-impl Drop for Particles {
+impl<S: ?Sized> Drop for LentParticles<S> {
     fn drop(&mut self) {
         let (handle, keep) = (Sent(self.handle), (self.grid.clone(), self.material.clone()));
         self.context.bury(move || {

@@ -7,7 +7,8 @@ use crate::obstacle::sized;
 use crate::view::Lent;
 use crate::{
     sys, AdaptionDesc, AdaptionInfo, AdvanceDesc, Columns, ContactDesc, ContactInfo, Element, Error, Flow, Grid,
-    LinearSystem, Obstacle, Particles, Profile, Refusal, Result, StagedStep, StepInfo, StepperDesc, Surface, View,
+    HeatDesc, HeatInfo, LentObstacle, LentParticles, LentSurface, LinearSystem, Obstacle, Particles, Profile, Refusal,
+    Result, StagedStep, StepInfo, StepperDesc, Surface, View,
 };
 use std::mem::size_of;
 use std::os::raw::c_void;
@@ -18,6 +19,7 @@ type ParticleFn = dyn Fn(&ParticleBatch<'_>, &mut Columns<'_, f64>) -> Flow + Se
 type VelocityFn = dyn Fn(&NodeBatch<'_>, &mut Columns<'_, u8>, &mut Columns<'_, f64>) -> Flow + Send + Sync;
 type NodeFn = dyn Fn(&NodeBatch<'_>, &mut Columns<'_, f64>, &mut Columns<'_, f64>) -> Flow + Send + Sync;
 type FrictionFn = dyn Fn(&ContactBatch<'_>, &mut [f64]) -> Flow + Send + Sync;
+type HeatFn = dyn Fn(&ParticleBatch<'_>, &mut [f64]) -> Flow + Send + Sync;
 type AcceptFn = dyn FnMut(&AdaptionBatch<'_>, &mut [u8]) -> Flow + Send;
 type SolveFn = dyn FnMut(&mut LinearSystem<'_>) -> std::result::Result<i64, Refusal> + Send;
 type ProgressFn = dyn FnMut(&StepInfo) -> Flow + Send;
@@ -47,6 +49,7 @@ struct Kept {
     surfaces: Vec<(SurfaceKey, Surface)>,
     motions: Vec<(SetKey, Owned<ParticleFn>)>,
     accepting: Vec<(SetKey, Owned<AcceptFn>)>,
+    heating: Vec<(SetKey, Owned<HeatFn>)>,
     acceleration: Option<Owned<ParticleFn>>,
     force: Option<Owned<ParticleFn>>,
     velocity_bc: Option<Owned<VelocityFn>>,
@@ -128,6 +131,7 @@ impl Stepper {
         call!(self, mpm_stepper_remove(self.kept.sets[k].1.as_ptr()))?;
         self.kept.motions.retain(|one| one.0 != set);
         self.kept.accepting.retain(|one| one.0 != set);
+        self.kept.heating.retain(|one| one.0 != set);
         Ok(self.kept.sets.remove(k).1)
     }
 
@@ -138,7 +142,7 @@ impl Stepper {
     }
 
     /// A set, to be changed. Panics where it is not in this stepper.
-    pub fn particles_mut(&mut self, set: SetKey) -> &mut Particles {
+    pub fn particles_mut(&mut self, set: SetKey) -> &mut LentParticles {
         let k = self.find(set).unwrap_or_else(|error| panic!("{error}"));
         &mut self.kept.sets[k].1
     }
@@ -170,7 +174,7 @@ impl Stepper {
     }
 
     /// An obstacle, to be changed. Panics where it is not in this stepper.
-    pub fn obstacle_mut(&mut self, obstacle: ObstacleKey) -> &mut Obstacle {
+    pub fn obstacle_mut(&mut self, obstacle: ObstacleKey) -> &mut LentObstacle {
         let k = self.find_obstacle(obstacle).unwrap_or_else(|error| panic!("{error}"));
         &mut self.kept.obstacles[k].1
     }
@@ -204,7 +208,7 @@ impl Stepper {
     }
 
     /// A surface, to be changed. Panics where it is not in this stepper.
-    pub fn surface_mut(&mut self, surface: SurfaceKey) -> &mut Surface {
+    pub fn surface_mut(&mut self, surface: SurfaceKey) -> &mut LentSurface {
         let k = self.find_surface(surface).unwrap_or_else(|error| panic!("{error}"));
         &mut self.kept.surfaces[k].1
     }
@@ -294,6 +298,55 @@ impl Stepper {
         let k = self.find(set)?;
         let mut info = AdaptionInfo::default();
         call!(self, mpm_stepper_adaption_info(self.kept.sets[k].1.as_ptr(), &mut info))?;
+        Ok(info)
+    }
+
+    /// Describes the heat of a set, which has the field `"temperature"` from then on; none: it has no heat any more. A
+    /// function in the descriptor is not called: see [`Stepper::set_heat_with`].
+    pub fn set_heat(&mut self, set: SetKey, desc: Option<&HeatDesc>) -> Result<()> {
+        self.heat(set, desc, None)
+    }
+
+    /// The same with a source (mt), which writes the power per present volume of each particle.
+    pub fn set_heat_with(
+        &mut self,
+        set: SetKey,
+        desc: &HeatDesc,
+        source: impl Fn(&ParticleBatch<'_>, &mut [f64]) -> Flow + Send + Sync + 'static,
+    ) -> Result<()> {
+        let slot = Owned::<HeatFn>::new(&self.context.thrown, Box::new(source));
+        self.heat(set, Some(desc), Some(slot))
+    }
+
+    fn heat(&mut self, set: SetKey, desc: Option<&HeatDesc>, source: Option<Owned<HeatFn>>) -> Result<()> {
+        let k = self.find(set)?;
+        let desc = desc.map(|desc| HeatDesc {
+            struct_size: size_of::<HeatDesc>() as u32,
+            source: source.as_ref().map(|_| on_heat as _),
+            user: user_of(&source),
+            ..*desc
+        });
+        let pointer = desc.as_ref().map_or(std::ptr::null(), |desc| desc);
+        call!(self, mpm_stepper_set_heat(self.kept.sets[k].1.as_ptr(), pointer))?;
+        self.kept.heating.retain(|one| one.0 != set);
+        self.kept.heating.extend(source.map(|slot| (set, slot)));
+        Ok(())
+    }
+
+    /// Chooses how the nodes conduct: `MPM_CONDUCTION_EXPLICIT`, or `MPM_CONDUCTION_IMPLICIT` to a tolerance.
+    pub fn set_conduction(&mut self, conduction: i32, tolerance: f64) -> Result<()> {
+        call!(self, mpm_stepper_set_conduction(conduction, tolerance))
+    }
+
+    /// Says what a face does to heat: `MPM_HEAT_WALL_INSULATED`, or `MPM_HEAT_WALL_TEMPERATURE` with its temperature.
+    pub fn set_heat_wall(&mut self, face: i32, kind: i32, temperature: f64) -> Result<()> {
+        call!(self, mpm_stepper_set_heat_wall(face, kind, temperature))
+    }
+
+    /// Where heat came from, in the last step and in all.
+    pub fn heat_info(&self) -> Result<HeatInfo> {
+        let mut info = HeatInfo::default();
+        call!(self, mpm_stepper_heat_info(&mut info))?;
         Ok(info)
     }
 
@@ -597,6 +650,12 @@ unsafe extern "C" fn on_friction(user: *mut c_void, batch: *const sys::mpm_conta
     let slot = shared::<FrictionFn>(user);
     let raw = &*batch;
     slot.thrown.guard(|| (slot.function)(&ContactBatch(raw), Columns::new(friction, raw.ld, raw.n, 1).column_mut(0)))
+}
+
+unsafe extern "C" fn on_heat(user: *mut c_void, batch: *const sys::mpm_particle_batch, power: *mut f64) -> i32 {
+    let slot = shared::<HeatFn>(user);
+    let raw = &*batch;
+    slot.thrown.guard(|| (slot.function)(&ParticleBatch(raw), Columns::new(power, raw.ld, raw.n, 1).column_mut(0)))
 }
 
 unsafe extern "C" fn on_adaption(user: *mut c_void, batch: *const sys::mpm_adaption_batch, accept: *mut u8) -> i32 {

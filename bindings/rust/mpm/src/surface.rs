@@ -3,13 +3,15 @@ use crate::arrays::{fits, pointer, Field};
 use crate::callback::{alone, Owned};
 use crate::entry::{Core, Sent};
 use crate::{sys, Columns, Element, Filled, Flow, Grid, MarkerBatch, Result, SurfaceDesc};
+use std::ops::{Deref, DerefMut};
 use std::os::raw::c_void;
 use std::sync::Arc;
 
 /// Adds to rows of the markers: tractions, or velocities.
 type MarkerFn = dyn FnMut(&MarkerBatch<'_>, &mut Columns<'_, f64>) -> Flow + Send;
 
-/// Markers that the material carries along, and that load it. A stepper takes it over, and lends it.
+/// Markers that the material carries along, and that load it. A stepper takes it over, and lends it as [`LentSurface`],
+/// which has what there is to be done with it.
 ///
 /// Vectors have as many components as the grid has dimensions. Area vectors, area times normal, point out of the material;
 /// they and forces are per thickness in 2-D, and of one radian on a grid that is `MPM_AXISYMMETRIC`. Pressures and tractions
@@ -17,17 +19,34 @@ type MarkerFn = dyn FnMut(&MarkerBatch<'_>, &mut Columns<'_, f64>) -> Flow + Sen
 ///
 /// A bad value is `MPM_E_ARG`, a field or an id that there is not `MPM_E_NOT_FOUND`, and what the dimension of the grid does
 /// not have `MPM_E_UNSUPPORTED`; then nothing has changed.
-pub struct Surface {
+pub struct Surface(Box<LentSurface>);
+
+/// A surface where it is. It has no size, so that nobody exchanges the surface of a stepper for another.
+pub struct LentSurface<S: ?Sized = [()]> {
     pub(crate) context: Arc<Core>,
     pub(crate) handle: *mut sys::mpm_surface,
     grid: Grid,
     traction: Option<Owned<MarkerFn>>,
     velocity: Option<Owned<MarkerFn>>,
+    _sizeless: S,
 }
 
 // SAFETY: the handle is used by an Entry only, and so are its functions.
-unsafe impl Send for Surface {}
-unsafe impl Sync for Surface {}
+unsafe impl Send for LentSurface {}
+unsafe impl Sync for LentSurface {}
+
+impl Deref for Surface {
+    type Target = LentSurface;
+    fn deref(&self) -> &LentSurface {
+        &self.0
+    }
+}
+
+impl DerefMut for Surface {
+    fn deref_mut(&mut self) -> &mut LentSurface {
+        &mut self.0
+    }
+}
 
 impl Surface {
     /// Makes a surface without markers.
@@ -38,9 +57,12 @@ impl Surface {
         // SAFETY: the descriptor is whole, and the surface keeps the grid.
         let status = unsafe { sys::mpm_surface_create(context.handle, grid.as_ptr(), &desc, &mut handle) };
         entry.done(status)?;
-        Ok(Surface { context, handle, grid: grid.clone(), traction: None, velocity: None })
+        let (grid, traction, velocity) = (grid.clone(), None, None);
+        Ok(Surface(Box::new(LentSurface { context, handle, grid, traction, velocity, _sizeless: [] })))
     }
+}
 
+impl LentSurface {
     /// Replaces loads and options between steps. Loads of all markers come on top of those that markers carry by themselves.
     pub fn configure(&mut self, desc: &SurfaceDesc) -> Result<()> {
         let desc = sized(desc);
@@ -99,6 +121,14 @@ impl Surface {
         entry.done(status)?;
         self.velocity = None;
         Ok(())
+    }
+
+    /// Heats what lies below: `flux + film * (ambient - temperature)`, power per area into the material; all 0 as made.
+    pub fn set_heat(&mut self, flux: f64, film: f64, ambient: f64) -> Result<()> {
+        let entry = self.context.enter()?;
+        // SAFETY: the handle lives.
+        let status = unsafe { sys::mpm_surface_set_heat(self.handle, flux, film, ambient) };
+        entry.done(status)
     }
 
     /// Adds markers at `position`, which is `[dim][n]` as the area vectors are; without area they follow the material and
@@ -216,7 +246,7 @@ impl Surface {
         of.copied(&self.context, sys::mpm_surface_get, self.handle)
     }
 
-    /// Sets a field of all markers, laid out as in [`Surface::get`]: all or none. Ids, reference areas, velocities and forces
+    /// Sets a field of all markers, laid out as in [`Self::get`]: all or none. Ids, reference areas, velocities and forces
     /// cannot be set; areas that are become those of reference.
     pub fn set<T: Element>(&mut self, field: &str, values: &[T]) -> Result<()> {
         self.overwrite(field, self.len(), None, values)
@@ -245,7 +275,7 @@ impl Surface {
     }
 }
 
-impl Drop for Surface {
+impl<S: ?Sized> Drop for LentSurface<S> {
     fn drop(&mut self) {
         let (handle, grid) = (Sent(self.handle), self.grid.clone());
         let functions = (self.traction.take(), self.velocity.take());
