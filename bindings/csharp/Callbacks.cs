@@ -17,6 +17,8 @@ namespace Mpm {
   public delegate int FrictionFunction(ref ContactBatch batch, Columns friction);
   /// <summary>Keeps particles and pairs as they are by accept[i, 0] = 0, which is 1.</summary>
   public delegate int AdaptionFunction(ref AdaptionBatch batch, ByteColumns accept);
+  /// <summary>(mt) Heats particles: power[i, 0] is power per present volume.</summary>
+  public delegate int HeatFunction(ref ParticleBatch batch, Columns power);
   /// <summary>Watches steps; a status above 0 ends the call with MPM_CANCELLED.</summary>
   public delegate int ProgressFunction(ref StepInfo info);
   /// <summary>(mt) Gives distances and normals of points.</summary>
@@ -35,8 +37,51 @@ namespace Mpm {
   /// <summary>Solves the linear system of an implicit step.</summary>
   public delegate int SolveFunction(LinearSystem system, ref long iterations);
 
-  /// <summary>An array of C: component c of item i is [i, c]. It is valid during the call that shows it.</summary>
+  /// <summary>What a function of the host is shown, until it returns: from then on the number is another. A
+  /// thread has one for each of the functions that it is in, and takes it again.</summary>
+  internal sealed unsafe class Lease {
+    [ThreadStatic] static Lease innermost;
+    readonly Lease outer;
+    Lease inner;
+    void* data;
+    long items;
+    double time;
+    public int Number;
+
+    Lease(Lease outer) {
+      this.outer = outer;
+    }
+    /// <summary>Begins a function that is shown a batch, which array, length and time tell from others.
+    /// </summary>
+    public static Lease Begin(void* data = null, long items = 0, double time = 0) {
+      var around = innermost ?? new Lease(null);
+      var lease = around.inner ?? (around.inner = new Lease(around));
+      lease.data = data;
+      lease.items = items;
+      lease.time = time;
+      return innermost = lease;
+    }
+    public void End() {
+      Number++;
+      innermost = outer;
+    }
+    /// <summary>That of a batch, also of a copy of it.</summary>
+    public static Lease Of(void* data, long items, double time) {
+      for (var lease = innermost; lease != null; lease = lease.outer)
+        if (lease.data == data && lease.items == items && lease.time == time) return lease;
+      throw Over("batch");
+    }
+    public static Exception Over(string what) {
+      return new ObjectDisposedException(what, "the function that was shown this " + what +
+        " has returned, or is on another thread: copy what is to be kept");
+    }
+  }
+
+  /// <summary>An array of C: component c of item i is [i, c]. It ends with the function that is shown it:
+  /// later accesses throw.</summary>
   public unsafe struct Columns {
+    readonly Lease lease;
+    readonly int number;
     readonly double* data;
     readonly long ld;
     readonly bool writable;
@@ -45,7 +90,9 @@ namespace Mpm {
     /// <summary>The number of components.</summary>
     public readonly int Components;
 
-    internal Columns(double* data, long ld, long count, int components, bool writable = true) {
+    internal Columns(Lease lease, double* data, long ld, long count, int components, bool writable = true) {
+      this.lease = lease;
+      number = lease.Number;
       this.data = data;
       this.ld = ld;
       this.writable = writable;
@@ -55,6 +102,7 @@ namespace Mpm {
     double* At(long item, int component) {
       if ((ulong)item >= (ulong)Count || (uint)component >= (uint)Components)
         throw new IndexOutOfRangeException();
+      if (lease.Number != number) throw Lease.Over("array");
       return data + component * ld + item;
     }
     public double this[long item, int component] {
@@ -76,12 +124,16 @@ namespace Mpm {
 
   /// <summary>The same of bytes.</summary>
   public unsafe struct ByteColumns {
+    readonly Lease lease;
+    readonly int number;
     readonly byte* data;
     readonly long ld;
     public readonly long Count;
     public readonly int Components;
 
-    internal ByteColumns(byte* data, long ld, long count, int components) {
+    internal ByteColumns(Lease lease, byte* data, long ld, long count, int components) {
+      this.lease = lease;
+      number = lease.Number;
       this.data = data;
       this.ld = ld;
       Count = count;
@@ -90,6 +142,7 @@ namespace Mpm {
     byte* At(long item, int component) {
       if ((ulong)item >= (ulong)Count || (uint)component >= (uint)Components)
         throw new IndexOutOfRangeException();
+      if (lease.Number != number) throw Lease.Over("array");
       return data + component * ld + item;
     }
     public byte this[long item, int component] {
@@ -99,62 +152,85 @@ namespace Mpm {
   }
 
   public unsafe partial struct ParticleBatch {
-    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
-    public Columns ReferencePosition { get { return new Columns(reference_position, ld, n, dim, false); } }
-    public Columns Velocity { get { return new Columns(velocity, ld, n, dim, false); } }
-    public Columns Mass { get { return new Columns(mass, ld, n, 1, false); } }
-    public Columns Volume { get { return new Columns(volume, ld, n, 1, false); } }
+    public Columns Position { get { return Shown(position, dim); } }
+    public Columns ReferencePosition { get { return Shown(reference_position, dim); } }
+    public Columns Velocity { get { return Shown(velocity, dim); } }
+    public Columns Mass { get { return Shown(mass, 1); } }
+    public Columns Volume { get { return Shown(volume, 1); } }
+    Columns Shown(double* data, int components) {
+      return new Columns(Lease.Of(position, n, t), data, ld, n, components, false);
+    }
   }
 
   public unsafe partial struct NodeBatch {
-    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
-    public Columns Mass { get { return new Columns(mass, ld, n, 1, false); } }
-    public ByteColumns Owned { get { return new ByteColumns(owned, ld, n, 1); } }
+    public Columns Position { get { return Shown(position, dim); } }
+    public Columns Mass { get { return Shown(mass, 1); } }
+    public ByteColumns Owned { get { return new ByteColumns(Lease.Of(position, n, t), owned, ld, n, 1); } }
+    Columns Shown(double* data, int components) {
+      return new Columns(Lease.Of(position, n, t), data, ld, n, components, false);
+    }
   }
 
   public unsafe partial struct ContactBatch {
-    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
-    public Columns Normal { get { return new Columns(normal, ld, n, dim, false); } }
-    public Columns Gap { get { return new Columns(gap, ld, n, 1, false); } }
-    public Columns Area { get { return new Columns(area, ld, n, 1, false); } }
-    public Columns Slip { get { return new Columns(slip, ld, n, dim, false); } }
-    public Columns Pressure { get { return new Columns(pressure, ld, n, 1, false); } }
+    public Columns Position { get { return Shown(position, dim); } }
+    public Columns Normal { get { return Shown(normal, dim); } }
+    public Columns Gap { get { return Shown(gap, 1); } }
+    public Columns Area { get { return Shown(area, 1); } }
+    public Columns Slip { get { return Shown(slip, dim); } }
+    public Columns Pressure { get { return Shown(pressure, 1); } }
+    Columns Shown(double* data, int components) {
+      return new Columns(Lease.Of(position, n, t), data, ld, n, components, false);
+    }
   }
 
   public unsafe partial struct AdaptionBatch {
-    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
+    public Columns Position { get { return Shown(position, dim); } }
+    Columns Shown(double* data, int components) {
+      return new Columns(Lease.Of(position, n, 0), data, ld, n, components, false);
+    }
   }
 
   public unsafe partial struct DistanceBatch {
-    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
-    public Columns Distance { get { return new Columns(distance, ld, n, 1); } }
-    public Columns Normal { get { return new Columns(normal, ld, n, dim); } }
-    public Columns Velocity { get { return new Columns(velocity, ld, n, dim); } }
+    public Columns Position { get { return Shown(position, dim, false); } }
+    public Columns Distance { get { return Shown(distance, 1, true); } }
+    public Columns Normal { get { return Shown(normal, dim, true); } }
+    public Columns Velocity { get { return Shown(velocity, dim, true); } }
+    Columns Shown(double* data, int components, bool writable) {
+      return new Columns(Lease.Of(position, n, t), data, ld, n, components, writable);
+    }
   }
 
   public unsafe partial struct MarkerBatch {
-    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
-    public Columns Area { get { return new Columns(area, ld, n, dim, false); } }
-    public Columns ReferenceArea { get { return new Columns(reference_area, ld, n, 1, false); } }
-    public Columns Displacement { get { return new Columns(displacement, ld, n, dim, false); } }
-    public Columns Velocity { get { return new Columns(velocity, ld, n, dim, false); } }
+    public Columns Position { get { return Shown(position, dim); } }
+    public Columns Area { get { return Shown(area, dim); } }
+    public Columns ReferenceArea { get { return Shown(reference_area, 1); } }
+    public Columns Displacement { get { return Shown(displacement, dim); } }
+    public Columns Velocity { get { return Shown(velocity, dim); } }
+    Columns Shown(double* data, int components) {
+      return new Columns(Lease.Of(position, n, t), data, ld, n, components, false);
+    }
   }
 
   public unsafe partial struct MaterialBatch {
-    public Columns DeformationGradient { get { return new Columns(F, ld, n, 9, false); } }
-    public Columns Increment { get { return new Columns(F_inc, ld, n, 9, false); } }
-    public Columns VelocityGradient { get { return new Columns(L, ld, n, 9, false); } }
-    public Columns Stress { get { return new Columns(stress, ld, n, 6, false); } }
-    public Columns State { get { return new Columns(state, ld, n, state_count, false); } }
-    public Columns NewStress { get { return new Columns(stress_new, ld, n, 6); } }
-    public Columns NewState { get { return new Columns(state_new, ld, n, state_count); } }
-    public Columns WaveSpeed { get { return new Columns(wave_speed, ld, n, 1); } }
-    public Columns KinematicViscosity { get { return new Columns(kinematic_viscosity, ld, n, 1); } }
-    public Columns Energy { get { return new Columns(energy, ld, n, 1); } }
+    public Columns DeformationGradient { get { return Shown(F, 9, false); } }
+    public Columns Increment { get { return Shown(F_inc, 9, false); } }
+    public Columns VelocityGradient { get { return Shown(L, 9, false); } }
+    public Columns Stress { get { return Shown(stress, 6, false); } }
+    public Columns State { get { return Shown(state, state_count, false); } }
+    public Columns NewStress { get { return Shown(stress_new, 6, true); } }
+    public Columns NewState { get { return Shown(state_new, state_count, true); } }
+    public Columns WaveSpeed { get { return Shown(wave_speed, 1, true); } }
+    public Columns KinematicViscosity { get { return Shown(kinematic_viscosity, 1, true); } }
+    public Columns Energy { get { return Shown(energy, 1, true); } }
+    Columns Shown(double* data, int components, bool writable) {
+      return new Columns(Lease.Of(F, n, t), data, ld, n, components, writable);
+    }
   }
 
   /// <summary>The linear system of an implicit step, valid during the call of the host's solver.</summary>
   public unsafe struct LinearSystem {
+    readonly Lease lease;
+    readonly int number;
     readonly IntPtr matrix;
     readonly double* rhs, solution;
     /// <summary>The struct of C.</summary>
@@ -162,7 +238,9 @@ namespace Mpm {
     /// <summary>The wanted ||matrix * solution - rhs|| / ||rhs||.</summary>
     public readonly double Tolerance;
 
-    internal LinearSystem(IntPtr matrix, double* rhs, double* solution, double tolerance) {
+    internal LinearSystem(Lease lease, IntPtr matrix, double* rhs, double* solution, double tolerance) {
+      this.lease = lease;
+      number = lease.Number;
       this.matrix = matrix;
       this.rhs = rhs;
       this.solution = solution;
@@ -172,16 +250,22 @@ namespace Mpm {
       Info = info;
     }
     public long Rows { get { return Info.rows; } }
-    public Columns RightHandSide { get { return new Columns(rhs, Rows, Rows, 1, false); } }
-    public Columns Solution { get { return new Columns(solution, Rows, Rows, 1); } }
+    public Columns RightHandSide { get { return new Columns(Shown(), rhs, Rows, Rows, 1, false); } }
+    public Columns Solution { get { return new Columns(Shown(), solution, Rows, Rows, 1); } }
+    Lease Shown() {
+      if (lease.Number != number) throw Lease.Over("system");
+      return lease;
+    }
     /// <summary>Computes y = matrix * x.</summary>
     public void Apply(double[] x, double[] y) {
+      Shown();
       if (x.Length != Rows || y.Length != Rows) throw new ArgumentException("x and y have as many entries as the system");
       fixed (double* from = x, to = y) MpmException.Check(Native.mpm_operator_apply(matrix, from, to), IntPtr.Zero);
     }
     /// <summary>Copies the matrix by compressed rows: row r has the entries start[r] to start[r + 1] - 1 of column, in ascending
     /// order, and of value.</summary>
     public void Csr(out long[] start, out int[] column, out double[] value) {
+      Shown();
       long* starts;
       int* columns;
       double* values;
@@ -233,6 +317,7 @@ namespace Mpm {
     public static readonly NodeFn Nodes = OnNodes;
     public static readonly FrictionFn Friction = OnFriction;
     public static readonly AdaptionFn Adaption = OnAdaption;
+    public static readonly HeatFn Heat = OnHeat;
     public static readonly ProgressFn Progress = OnProgress;
     public static readonly DistanceFn Distance = OnDistance;
     public static readonly MotionFn Motion = OnMotion;
@@ -248,52 +333,85 @@ namespace Mpm {
     [MonoPInvokeCallback(typeof(ParticleFn))]
     static int OnParticles(IntPtr user, ParticleBatch* batch, double* add) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->position, batch->n, batch->t);
       try {
-        return ((ParticleFunction)slot.Function)(ref *batch, new Columns(add, batch->ld, batch->n, batch->dim));
+        return ((ParticleFunction)slot.Function)(ref *batch,
+          new Columns(lease, add, batch->ld, batch->n, batch->dim));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
     [MonoPInvokeCallback(typeof(VelocityFn))]
     static int OnVelocity(IntPtr user, NodeBatch* batch, byte* prescribed, double* velocity) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->position, batch->n, batch->t);
       try {
-        return ((VelocityFunction)slot.Function)(ref *batch, new ByteColumns(prescribed, batch->ld, batch->n, batch->dim),
-          new Columns(velocity, batch->ld, batch->n, batch->dim));
+        return ((VelocityFunction)slot.Function)(ref *batch,
+          new ByteColumns(lease, prescribed, batch->ld, batch->n, batch->dim),
+          new Columns(lease, velocity, batch->ld, batch->n, batch->dim));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
     [MonoPInvokeCallback(typeof(NodeFn))]
     static int OnNodes(IntPtr user, NodeBatch* batch, double* velocity, double* force) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->position, batch->n, batch->t);
       try {
-        return ((NodeFunction)slot.Function)(ref *batch, new Columns(velocity, batch->ld, batch->n, batch->dim),
-          new Columns(force, batch->ld, batch->n, batch->dim));
+        return ((NodeFunction)slot.Function)(ref *batch,
+          new Columns(lease, velocity, batch->ld, batch->n, batch->dim),
+          new Columns(lease, force, batch->ld, batch->n, batch->dim));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
     [MonoPInvokeCallback(typeof(FrictionFn))]
     static int OnFriction(IntPtr user, ContactBatch* batch, double* friction) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->position, batch->n, batch->t);
       try {
-        return ((FrictionFunction)slot.Function)(ref *batch, new Columns(friction, batch->ld, batch->n, 1));
+        return ((FrictionFunction)slot.Function)(ref *batch,
+          new Columns(lease, friction, batch->ld, batch->n, 1));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
     [MonoPInvokeCallback(typeof(AdaptionFn))]
     static int OnAdaption(IntPtr user, AdaptionBatch* batch, byte* accept) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->position, batch->n);
       try {
-        return ((AdaptionFunction)slot.Function)(ref *batch, new ByteColumns(accept, batch->ld, batch->n, 1));
+        return ((AdaptionFunction)slot.Function)(ref *batch,
+          new ByteColumns(lease, accept, batch->ld, batch->n, 1));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(HeatFn))]
+    static int OnHeat(IntPtr user, ParticleBatch* batch, double* power) {
+      var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->position, batch->n, batch->t);
+      try {
+        return ((HeatFunction)slot.Function)(ref *batch, new Columns(lease, power, batch->ld, batch->n, 1));
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
@@ -310,49 +428,67 @@ namespace Mpm {
     [MonoPInvokeCallback(typeof(DistanceFn))]
     static int OnDistance(IntPtr user, DistanceBatch* batch) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->position, batch->n, batch->t);
       try {
         return ((DistanceFunction)slot.Function)(ref *batch);
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
     [MonoPInvokeCallback(typeof(MotionFn))]
     static int OnMotion(IntPtr user, double t, double dt, double* velocity, double* angular_velocity) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin();
       try {
-        return ((MotionFunction)slot.Function)(t, dt, new Columns(velocity, 1, 1, 3), new Columns(angular_velocity, 1, 1, 3));
+        return ((MotionFunction)slot.Function)(t, dt, new Columns(lease, velocity, 1, 1, 3),
+          new Columns(lease, angular_velocity, 1, 1, 3));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
     [MonoPInvokeCallback(typeof(TractionFn))]
     static int OnTraction(IntPtr user, MarkerBatch* batch, double* add) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->position, batch->n, batch->t);
       try {
-        return ((TractionFunction)slot.Function)(ref *batch, new Columns(add, batch->ld, batch->n, batch->dim));
+        return ((TractionFunction)slot.Function)(ref *batch,
+          new Columns(lease, add, batch->ld, batch->n, batch->dim));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
     [MonoPInvokeCallback(typeof(MarkerVelocityFn))]
     static int OnMarkerVelocity(IntPtr user, MarkerBatch* batch, double* add) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->position, batch->n, batch->t);
       try {
-        return ((MarkerVelocityFunction)slot.Function)(ref *batch, new Columns(add, batch->ld, batch->n, batch->dim));
+        return ((MarkerVelocityFunction)slot.Function)(ref *batch,
+          new Columns(lease, add, batch->ld, batch->n, batch->dim));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
     [MonoPInvokeCallback(typeof(StressFn))]
     static int OnStress(IntPtr user, MaterialBatch* batch) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->F, batch->n, batch->t);
       try {
         return ((StressFunction)slot.Function)(ref *batch);
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
@@ -368,30 +504,42 @@ namespace Mpm {
 
     static int OnTangent(IntPtr user, MaterialBatch* batch, double* tangent, int* symmetric, int components) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin(batch->F, batch->n, batch->t);
       try {
-        return ((TangentFunction)slot.Second)(ref *batch, new Columns(tangent, batch->ld, batch->n, components), ref *symmetric);
+        return ((TangentFunction)slot.Second)(ref *batch,
+          new Columns(lease, tangent, batch->ld, batch->n, components), ref *symmetric);
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
     [MonoPInvokeCallback(typeof(InsideFn))]
     static int OnInside(IntPtr user, int dim, long n, long ld, double* position, byte* inside) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin();
       try {
-        return ((InsideFunction)slot.Function)(new Columns(position, ld, n, dim, false), new ByteColumns(inside, n, n, 1));
+        return ((InsideFunction)slot.Function)(new Columns(lease, position, ld, n, dim, false),
+          new ByteColumns(lease, inside, n, n, 1));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 
     [MonoPInvokeCallback(typeof(SolveFn))]
     static int OnSolve(IntPtr user, IntPtr matrix, double* rhs, double* solution, double tolerance, long* iterations) {
       var slot = Slot.Of(user);
+      var lease = Lease.Begin();
       try {
-        return ((SolveFunction)slot.Function)(new LinearSystem(matrix, rhs, solution, tolerance), ref *iterations);
+        return ((SolveFunction)slot.Function)(
+          new LinearSystem(lease, matrix, rhs, solution, tolerance), ref *iterations);
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
+      } finally {
+        lease.End();
       }
     }
 

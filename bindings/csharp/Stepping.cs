@@ -130,6 +130,12 @@ namespace Mpm {
         slot == null ? null : Trampolines.MarkerVelocity, slot == null ? IntPtr.Zero : slot.User));
     }
 
+    /// <summary>Heats what lies below: flux + film * (ambient - temperature), power per area into the
+    /// material; all 0 as made.</summary>
+    public void SetHeat(double flux, double film = 0, double ambient = 0) {
+      Call(p => Native.mpm_surface_set_heat(p, flux, film, ambient));
+    }
+
     /// <summary>The number of markers. May be called in callbacks.</summary>
     public long Count { get { return Native.mpm_surface_count(Pointer); } }
 
@@ -257,6 +263,7 @@ namespace Mpm {
       Call(p => Native.mpm_stepper_remove(p, set.Pointer));
       node.Put(MotionOf(set), null);
       node.Put(AdaptionOf(set), null);
+      node.Put(HeatOf(set), null);
       node.LetGo(set.node);
     }
     public void Add(Obstacle obstacle) {
@@ -345,6 +352,40 @@ namespace Mpm {
       return info;
     }
 
+    /// <summary>Describes the heat of a set, which has the field "temperature" from then on; null: it has no
+    /// heat any more. A function in the descriptor is not called: it is `source` that heats.</summary>
+    public void SetHeat(Particles set, HeatDesc? heat, HeatFunction source = null) {
+      var desc = heat ?? HeatDesc.Default();
+      desc.struct_size = (uint)sizeof(HeatDesc);
+      Install(HeatOf(set), source, (p, user) => {
+        var options = desc;
+        options.source = user == IntPtr.Zero ? IntPtr.Zero : Trampolines.Address(Trampolines.Heat);
+        options.user = user;
+        return Native.mpm_stepper_set_heat(p, set.Pointer, heat.HasValue ? &options : null);
+      });
+    }
+    /// <summary>Chooses how the nodes conduct: MPM_CONDUCTION_EXPLICIT, or MPM_CONDUCTION_IMPLICIT to a
+    /// tolerance.</summary>
+    public void SetConduction(int conduction, double tolerance = 1e-9) {
+      Call(p => Native.mpm_stepper_set_conduction(p, conduction, tolerance));
+    }
+    /// <summary>Says what a face does to heat: MPM_HEAT_WALL_INSULATED, or MPM_HEAT_WALL_TEMPERATURE with
+    /// its temperature.</summary>
+    public void SetHeatWall(int face, int kind, double temperature = 0) {
+      Call(p => Native.mpm_stepper_set_heat_wall(p, face, kind, temperature));
+    }
+    /// <summary>Where heat came from, in the last step and in all.</summary>
+    public HeatInfo HeatInfo() {
+      var info = Mpm.HeatInfo.Empty();
+      Call(p => {
+        var found = Mpm.HeatInfo.Empty();
+        int status = Native.mpm_stepper_heat_info(p, &found);
+        info = found;
+        return status;
+      });
+      return info;
+    }
+
     // Functions of the host; null takes one away. Each is kept alive while C may call it.
 
     public void SetForce(ParticleFunction function) {
@@ -380,6 +421,9 @@ namespace Mpm {
     }
     static string AdaptionOf(Particles set) {
       return "adaption" + set.Pointer;
+    }
+    static string HeatOf(Particles set) {
+      return "heat" + set.Pointer;
     }
     static T Fn<T>(T trampoline, IntPtr user) where T : class {
       return user == IntPtr.Zero ? null : trampoline;

@@ -232,6 +232,193 @@ namespace Mpm {
       }
     }
 
+    /// <summary>What was shown to a function ends with it, and later accesses throw.</summary>
+    static void Kept() {
+      Columns add = default(Columns), mass = add, velocity = add, hooked = add, moved = add, points = add;
+      ByteColumns prescribed = default(ByteColumns), inside = prescribed;
+      ParticleBatch particles = default(ParticleBatch), first = particles;
+      var nodes = default(NodeBatch);
+      using (var scene = new Scene()) {
+        int calls = 0;
+        scene.Stepper.SetForce((ref ParticleBatch batch, Columns more) => {
+          if (calls++ == 0) {
+            first = batch;
+          } else {
+            Throws<ObjectDisposedException>(() => first.Mass.ToString(), "a batch of the first step");
+            Throws<ObjectDisposedException>(() => mass[0, 0].ToString(), "masses of the step before");
+          }
+          particles = batch;
+          add = more;
+          mass = particles.Mass; // of a copy
+          double found = 0;
+          var other = new Thread(() => found = mass[0, 0]);
+          other.Start();
+          other.Join();
+          Near(found, batch.Mass[0, 0], "an array on another thread");
+          using (var inner = new Scene()) {
+            inner.Stepper.SetForce((ref ParticleBatch its, Columns _) => {
+              Near(particles.Mass[0, 0], found, "a batch of the function around");
+              return its.Mass.Count == its.n ? MPM_OK : 1;
+            });
+            inner.Stepper.Step(1e-3);
+          }
+          more[0, 0] += 0 * particles.Mass[0, 0];
+          return MPM_OK;
+        });
+        scene.Stepper.SetVelocityBc((ref NodeBatch batch, ByteColumns held, Columns v) => {
+          nodes = batch;
+          prescribed = held;
+          velocity = v;
+          held[0, 0] = batch.Owned[0, 0];
+          return MPM_OK;
+        });
+        scene.Stepper.SetNodeHook(MPM_AFTER_FORCES, (ref NodeBatch batch, Columns v, Columns force) => {
+          hooked = force;
+          return MPM_OK;
+        });
+        scene.Stepper.Step(1e-3);
+        scene.Stepper.Step(1e-3);
+        var desc = ObstacleDesc.Default();
+        desc.shape = MPM_SHAPE_SPHERE;
+        desc.motion = MPM_MOTION_PRESCRIBED;
+        unsafe {
+          desc.size[0] = 0.05;
+          desc.position[0] = desc.position[1] = 0.1;
+        }
+        using (var ball = new Obstacle(scene.Context, desc)) {
+          ball.SetMotion((t, dt, v, spin) => {
+            moved = v;
+            return MPM_OK;
+          });
+          scene.Stepper.Add(ball);
+          scene.Stepper.Step(1e-3);
+          scene.Stepper.Remove(ball);
+        }
+        using (var set = new Particles(scene.Context, scene.Grid, scene.Material))
+          set.Fill(new[] { 0.1, 0.1 }, new[] { 0.2, 0.2 }, new[] { 2, 2 }, (x, yes) => {
+            points = x;
+            inside = yes;
+            yes[0, 0] = (byte)(x[0, 0] > 0 ? 1 : 0);
+            return MPM_OK;
+          });
+        foreach (var array in new[] { add, mass, velocity, hooked, moved, points }) {
+          Is(array.Count > 0, true, "an array that was shown");
+          Throws<ObjectDisposedException>(() => array[0, 0].ToString(), "an array that was kept");
+        }
+        Throws<ObjectDisposedException>(() => add[0, 0] = 1, "writing into an array that was kept");
+        unsafe {
+          Throws<ObjectDisposedException>(() => Is(add.Pointer(0) == null, true, ""), "its address");
+        }
+        foreach (var array in new[] { prescribed, inside })
+          Throws<ObjectDisposedException>(() => array[0, 0].ToString(), "bytes that were kept");
+        var gone = Throws<ObjectDisposedException>(() => particles.Mass.ToString(), "a batch that was kept");
+        Is(gone.Message.Contains("has returned"), true, gone.Message);
+        Throws<ObjectDisposedException>(() => nodes.Owned.ToString(), "nodes that were kept");
+      }
+
+      var system = default(LinearSystem);
+      using (var scene = new Scene(scheme: MPM_NEWMARK, solver: MPM_SOLVER_HOST)) {
+        scene.Stepper.SetLinearSolver((LinearSystem shown, ref long iterations) => {
+          system = shown;
+          Is(shown.RightHandSide.Count, shown.Rows, "a right-hand side");
+          return MPM_CUT_DT;
+        });
+        Throws<MpmException>(() => scene.Stepper.Step(1e-3), "no solution");
+      }
+      long[] start;
+      int[] column;
+      double[] value, x0 = new double[system.Rows];
+      Throws<ObjectDisposedException>(() => system.RightHandSide.ToString(), "a kept right-hand side");
+      Throws<ObjectDisposedException>(() => system.Solution.ToString(), "a solution that was kept");
+      Throws<ObjectDisposedException>(() => system.Apply(x0, x0), "a matrix that was kept");
+      Throws<ObjectDisposedException>(() => system.Csr(out start, out column, out value), "its rows");
+    }
+
+    /// <summary>A bar from 0 to 1 that the grid insulates, so soft that sound bounds no step. Its specific heat 3
+    /// and its density 2 make the diffusivity 0.2.</summary>
+    static void Bar(Action<Stepper, Particles, HeatDesc> run) {
+      var soft = new Dictionary<string, double> { { "E", 1e-6 }, { "nu", 0.3 }, { "density", 2 } };
+      using (var context = new Context())
+      using (var grid = new Grid(context, Grid.Box(new long[] { 20 }, new[] { 0.05 })))
+      using (var material = new Material(context, "neo_hookean", soft))
+      using (var set = new Particles(context, grid, material))
+      using (var stepper = new Stepper(context, grid, StepperDesc.Default())) {
+        set.FillBox(new[] { 0.0 }, new[] { 1.0 }, new[] { 2 });
+        stepper.Add(set);
+        var heat = HeatDesc.Default();
+        heat.specific_heat = 3;
+        heat.conductivity = 1.2;
+        run(stepper, set, heat);
+      }
+    }
+    static unsafe void Heat() {
+      Bar((stepper, bar, heat) => {
+        Refuses(MPM_E_STATE, "no set has heat", () => stepper.HeatInfo());
+        Refuses(MPM_E_ARG, "specific_heat", () => stepper.SetHeat(bar, HeatDesc.Default()));
+        stepper.SetHeat(bar, heat);
+        var cosine = Array.ConvertAll(bar.Get<double>("position"), x => Math.Cos(Math.PI * x));
+        bar.Set("temperature", cosine);
+        double before = stepper.HeatInfo().heat, decay = Math.Exp(-0.2 * Math.PI * Math.PI * 0.5);
+        stepper.Advance(0.5);
+        var found = bar.Get<double>("temperature");
+        for (int i = 0; i < found.Length; i++)
+          Is(Math.Abs(found[i] - decay * cosine[i]) < 0.01, true, "a cosine that decays");
+        Near(stepper.HeatInfo().heat, before, "the heat of an insulated bar");
+      });
+      Bar((stepper, bar, heat) => {
+        stepper.SetHeat(bar, heat);
+        stepper.SetConduction(MPM_CONDUCTION_IMPLICIT, 1e-12);
+        stepper.SetHeatWall(MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 10);
+        stepper.SetHeatWall(MPM_X_MAX, MPM_HEAT_WALL_TEMPERATURE, 20);
+        for (int k = 0; k < 200; k++) stepper.Step(0.1);
+        double[] x = bar.Get<double>("position"), found = bar.Get<double>("temperature");
+        for (int i = 0; i < x.Length; i++)
+          Is(Math.Abs(found[i] - 10 - 10 * x[i]) < 1e-6, true, "a bar between two temperatures");
+        var info = stepper.HeatInfo();
+        double flow = 1.2 * 10 * 0.1; // Fourier's law for the time of a step
+        Near(Math.Round(info.walls[0], 6), -flow, "what goes out");
+        Near(Math.Round(info.walls[1], 6), flow, "what goes in");
+      });
+      Bar((stepper, bar, heat) => {
+        stepper.SetHeat(bar, heat, (ref ParticleBatch batch, Columns power) => {
+          for (long i = 0; i < batch.n; i++) power[i, 0] = 12;
+          return MPM_OK;
+        });
+        GC.Collect();
+        GC.WaitForPendingFinalizers();
+        for (int k = 0; k < 10; k++) stepper.Step(5e-3);
+        Near(bar.Get<double>("temperature")[7], 12 * 0.05 / 6, "a bar that is heated");
+        Near(stepper.HeatInfo().sources_total, 12 * 0.05, "the heat of the source");
+        stepper.SetHeat(bar, heat, (ref ParticleBatch batch, Columns power) => { throw new Own(); });
+        Throws<Own>(() => stepper.Step(5e-3), "the exception of a source");
+        stepper.Remove(bar);
+        stepper.Add(bar);
+        stepper.Step(5e-3);
+        stepper.SetHeat(bar, null);
+      });
+      using (var scene = new Scene())
+      using (var face = new Surface(scene.Context, scene.Grid, SurfaceDesc.Default())) {
+        var heat = HeatDesc.Default();
+        heat.specific_heat = 3;
+        scene.Stepper.SetHeat(scene.Set, heat);
+        face.Add(new[] { 0.7, 0.5 }, new[] { 0.4, 0.0 });
+        scene.Stepper.Add(face);
+        face.SetHeat(5);
+        Refuses(MPM_E_ARG, "film", () => face.SetHeat(0, -1));
+        scene.Stepper.Step(1e-3);
+        Near(scene.Stepper.HeatInfo().surfaces * 1e3, 5 * 0.4, "the heat of a surface");
+        scene.Stepper.Remove(face);
+      }
+      StressFunction none = (ref MaterialBatch batch) => MPM_OK;
+      using (var scene = new Scene(law: context => new Material(context, 1e3, none))) {
+        var heat = HeatDesc.Default();
+        heat.specific_heat = 3;
+        heat.dissipated_share = 0.5;
+        Refuses(MPM_E_UNSUPPORTED, "what a law of the host dissipates is not known",
+          () => scene.Stepper.SetHeat(scene.Set, heat));
+      }
+    }
+
     sealed class Least : Exception {
       public readonly long Id;
       public Least(long id) {
@@ -749,6 +936,8 @@ namespace Mpm {
       Errors();
       Fields();
       Callbacks();
+      Kept();
+      Heat();
       Threads();
       First();
       Laws();
