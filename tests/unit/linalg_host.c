@@ -170,14 +170,16 @@ static int64_t pattern_of(const springs *of, int64_t counted) {
 
 /* A host gives its solver to another stepper, where the library counts patterns from the beginning again. */
 START_TEST(patterns) {
-  springs turned = shape, loose = shape;
+  springs turned = shape, loose = shape, wide = shape;
   turned.n[0] = shape.n[1];
   turned.n[1] = shape.n[0];
   loose.rollers = 0;
+  wide.reach = 2;
   const int64_t first = pattern_of(&shape, 1);
   ck_assert_int_eq(pattern_of(&shape, 2), first);
-  const int64_t second = pattern_of(&turned, 3), third = pattern_of(&loose, 4);
+  const int64_t second = pattern_of(&turned, 3), third = pattern_of(&loose, 4), fourth = pattern_of(&wide, 5);
   ck_assert(second != first && third != first && third != second);
+  ck_assert(fourth != first && fourth != second && fourth != third); /* the same rows, other columns */
   mpmi_solver_destroy(solver);
   ck_ok(context, mpmi_solver_create(context, &solver));
   ck_assert_int_eq(pattern_of(&turned, 1), second);

@@ -12,10 +12,11 @@ static const lattice lattices[] = {
     {"cpGIMP", MPM_CPGIMP, 2},      {"quadratic", MPM_BSPLINE2, 1}, {"quadratic", MPM_BSPLINE2, 3},
     {"quadratic", MPM_BSPLINE2, 2}, {"cubic", MPM_BSPLINE3, 1},     {"cubic", MPM_BSPLINE3, 2}};
 enum { LATTICES = sizeof lattices / sizeof *lattices };
-static const double origins[] = {0.0, 0.7, -1.0 / 3.0};
+static const double origins[] = {0.0, 0.7, -1.0 / 3.0, 2.3};
 enum { ORIGINS = sizeof origins / sizeof *origins };
 
-/* Fills what, of a cantilever that bends, with the strain energy and the largest component of stress. */
+/* Fills what, of two cantilevers that bend towards each other, with the strain energy and the largest component
+ * of stress. One ends where the last node is above its particles, the other where it is below. */
 static void bend(const lattice *on, int32_t scheme, int32_t lagrangian, int32_t isa, double origin,
                  double what[2]) {
   world w;
@@ -27,9 +28,12 @@ static void bend(const lattice *on, int32_t scheme, int32_t lagrangian, int32_t 
   d.stepper.scheme = scheme;
   d.stepper.gravity[1] = -5.0;
   mpm_particles *set = world_open(&w, &d);
-  const double low[2] = {origin, origin + 1.0}, high[2] = {origin + 1.2, origin + 1.4};
-  const int64_t n = world_fill(&w, set, low, high, on->per_cell);
-  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
+  for (int32_t i = 0; i < 2; ++i) {
+    const double low[2] = {origin + 1.4 * i, origin + 1.0}, high[2] = {origin + 1.0 + 1.4 * i, origin + 1.4};
+    world_fill(&w, set, low, high, on->per_cell);
+    ck_ok(&w, mpm_stepper_set_wall(w.stepper, i ? MPM_X_MAX : MPM_X_MIN, MPM_WALL_FIXED, 0.0));
+  }
+  const int64_t n = mpm_particles_count(set);
   for (int32_t i = 0; i < 60; ++i) world_step(&w, 1e-3);
   double *stress = fetch(&w, set, "stress", 6);
   what[0] = w.info.strain_energy;
