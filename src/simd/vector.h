@@ -31,12 +31,6 @@ MPMI_INLINE mpmi_v4 mpmi_scale4(double s, mpmi_v4 v) {
 MPMI_INLINE mpmi_v4 mpmi_fma4(mpmi_v4 a, double s, mpmi_v4 v) {
   return a + s * v;
 }
-MPMI_INLINE mpmi_v4 mpmi_less4(mpmi_v4 a, double s, mpmi_v4 v) {
-  return a - s * v;
-}
-MPMI_INLINE mpmi_v4 mpmi_scaled_less4(double s, mpmi_v4 a, mpmi_v4 b) {
-  return s * a - b;
-}
 MPMI_INLINE mpmi_v4 mpmi_sum4(mpmi_v4 a, mpmi_v4 b) {
   return a + b;
 }
@@ -82,12 +76,6 @@ MPMI_INLINE mpmi_v4 mpmi_scale4(double s, mpmi_v4 v) {
 }
 MPMI_INLINE mpmi_v4 mpmi_fma4(mpmi_v4 a, double s, mpmi_v4 v) {
   return (mpmi_v4){a.low + s * v.low, a.high + s * v.high};
-}
-MPMI_INLINE mpmi_v4 mpmi_less4(mpmi_v4 a, double s, mpmi_v4 v) {
-  return (mpmi_v4){a.low - s * v.low, a.high - s * v.high};
-}
-MPMI_INLINE mpmi_v4 mpmi_scaled_less4(double s, mpmi_v4 a, mpmi_v4 b) {
-  return (mpmi_v4){s * a.low - b.low, s * a.high - b.high};
 }
 MPMI_INLINE mpmi_v4 mpmi_sum4(mpmi_v4 a, mpmi_v4 b) {
   return (mpmi_v4){a.low + b.low, a.high + b.high};
@@ -205,13 +193,6 @@ MPMI_INLINE mpmi_node mpmi_node_sum(int32_t part, mpmi_node a, mpmi_node b) {
 MPMI_INLINE mpmi_node mpmi_node_difference(int32_t part, mpmi_node a, mpmi_node b) {
   return part == MPMI_LOW ? mpmi_node_of4(a.four - b.four) : mpmi_node_of8(a.eight - b.eight);
 }
-/* a - s b, and s a - b. */
-MPMI_INLINE mpmi_node mpmi_node_less(int32_t part, mpmi_node a, double s, mpmi_node b) {
-  return part == MPMI_LOW ? mpmi_node_of4(a.four - s * b.four) : mpmi_node_of8(a.eight - s * b.eight);
-}
-MPMI_INLINE mpmi_node mpmi_node_scaled_less(int32_t part, double s, mpmi_node a, mpmi_node b) {
-  return part == MPMI_LOW ? mpmi_node_of4(s * a.four - b.four) : mpmi_node_of8(s * a.eight - b.eight);
-}
 MPMI_INLINE mpmi_pair mpmi_pair_of(double low, double high) {
   return (mpmi_pair){low, low, low, low, high, high, high, high};
 }
@@ -269,16 +250,6 @@ MPMI_INLINE mpmi_node mpmi_node_sum(int32_t part, mpmi_node a, mpmi_node b) {
 MPMI_INLINE mpmi_node mpmi_node_difference(int32_t part, mpmi_node a, mpmi_node b) {
   if (part & MPMI_LOW) a.low = mpmi_difference4(a.low, b.low);
   if (part & MPMI_HIGH) a.high = mpmi_difference4(a.high, b.high);
-  return a;
-}
-MPMI_INLINE mpmi_node mpmi_node_less(int32_t part, mpmi_node a, double s, mpmi_node b) {
-  if (part & MPMI_LOW) a.low = mpmi_less4(a.low, s, b.low);
-  if (part & MPMI_HIGH) a.high = mpmi_less4(a.high, s, b.high);
-  return a;
-}
-MPMI_INLINE mpmi_node mpmi_node_scaled_less(int32_t part, double s, mpmi_node a, mpmi_node b) {
-  if (part & MPMI_LOW) a.low = mpmi_scaled_less4(s, a.low, b.low);
-  if (part & MPMI_HIGH) a.high = mpmi_scaled_less4(s, a.high, b.high);
   return a;
 }
 MPMI_INLINE mpmi_pair mpmi_pair_of(double low, double high) {

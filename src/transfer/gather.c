@@ -10,8 +10,8 @@
 #include "simd/pack.h"
 #include "transfer/gather.h"
 
-/* Holds, per particle of a chunk: v; dv; gradients; sums of w v (x_i - x_p), or of w v (i - middle) in the MLS
- * form. Below three axes two of these share four values: v and dv, and the columns of a matrix. */
+/* Holds, per particle of a chunk: v; dv; gradients; sums of w v (x_i - x_p), or of w v (i - middle) in the
+ * MLS form. Below three axes two of these share four values: v and dv, and the columns of a matrix. */
 typedef struct mpmi_gathered {
   _Alignas(64) double v[4 * MPMI_CHUNK], dv[4 * MPMI_CHUNK], L[3][4 * MPMI_CHUNK], M[3][4 * MPMI_CHUNK];
 } mpmi_gathered;
@@ -19,49 +19,25 @@ typedef struct mpmi_gathered {
 /* The node of a stencil, counted along an axis, about which moments are taken. */
 #define MIDDLE(width) ((width) > 2 ? 1 : 0)
 
-/* Sums are made node by node along an axis, k = 0, 1 ... in order: sum += w_k v_k, slope += g_k v_k. Of three
- * nodes they go by the steps between them, because weights come to one and gradients to nothing:
- *
- *   sum = v_1 - w_0 (v_1 - v_0) + w_2 (v_2 - v_1)        slope = g_2 (v_2 - v_1) - g_0 (v_1 - v_0)
- *
- * These are fewer products, and nodes that have one velocity give that velocity and no gradient. */
-MPMI_INLINE void add(int32_t all, int32_t part, int32_t width, int32_t k, int64_t p,
-                     const double (*w)[MPMI_CHUNK], const double (*g)[MPMI_CHUNK], mpmi_node v,
-                     mpmi_node *before, mpmi_node *sum, mpmi_node *slope) {
-  if (width != 3) {
-    *sum = k ? mpmi_node_fma(all, *sum, w[k][p], v) : mpmi_node_scale(all, w[k][p], v);
-    *slope = k ? mpmi_node_fma(part, *slope, g[k][p], v) : mpmi_node_scale(part, g[k][p], v);
-    return;
-  }
-  const mpmi_node step = mpmi_node_difference(all, v, *before);
-  if (k == 1) {
-    *sum = mpmi_node_less(all, v, w[0][p], step);
-    *slope = mpmi_node_scale(part, g[0][p], step);
-  } else if (k == 2) {
-    *sum = mpmi_node_fma(all, *sum, w[2][p], step);
-    *slope = mpmi_node_scaled_less(part, g[2][p], step, *slope);
-  }
-  *before = v;
-}
-
-/* The same of the MLS form: sum += w_k v_k, m += (k - middle) w_k v_k. */
-MPMI_INLINE void add_moment(int32_t width, int32_t k, double w, mpmi_node v, mpmi_node *sum, mpmi_node *m) {
+/* sum += w_k v_k; with `moment` also *m += (k - middle) w_k v_k. Called for k = 0, 1 ... in order. */
+MPMI_INLINE void add(int32_t part, int32_t moment, int32_t width, int32_t k, double w, mpmi_node v,
+                     mpmi_node *sum, mpmi_node *m) {
   const int32_t middle = MIDDLE(width);
-  if (k == middle) {
-    *sum = k ? mpmi_node_fma(MPMI_LOW, *sum, w, v) : mpmi_node_scale(MPMI_LOW, w, v);
+  if (!moment || k == middle) {
+    *sum = k ? mpmi_node_fma(part, *sum, w, v) : mpmi_node_scale(part, w, v);
     return;
   }
-  const mpmi_node term = mpmi_node_scale(MPMI_LOW, w, v);
-  *sum = k ? mpmi_node_sum(MPMI_LOW, *sum, term) : term;
+  const mpmi_node term = mpmi_node_scale(part, w, v);
+  *sum = k ? mpmi_node_sum(part, *sum, term) : term;
   if (k == middle + 1)
-    *m = middle ? mpmi_node_difference(MPMI_LOW, term, *m) : term;
+    *m = middle ? mpmi_node_difference(part, term, *m) : term;
   else
-    *m = k ? mpmi_node_fma(MPMI_LOW, *m, k - middle, term) : term;
+    *m = k ? mpmi_node_fma(part, *m, k - middle, term) : term;
 }
 
-/* sum += w_k v_k. */
-MPMI_INLINE void add_scaled(int32_t part, int32_t k, double w, mpmi_node v, mpmi_node *sum) {
-  *sum = k ? mpmi_node_fma(part, *sum, w, v) : mpmi_node_scale(part, w, v);
+/* slope += g_k v_k. */
+MPMI_INLINE void add_slope(int32_t part, int32_t k, double g, mpmi_node v, mpmi_node *slope) {
+  *slope = k ? mpmi_node_fma(part, *slope, g, v) : mpmi_node_scale(part, g, v);
 }
 
 MPMI_INLINE void store_columns(int32_t dim, int32_t part, const mpmi_node *column, int64_t p,
@@ -84,8 +60,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
   const mpmi_node zero = mpmi_node_zero();
   mpmi_node v = zero, L[3] = {zero, zero, zero}, M[3] = {zero, zero, zero};    /* over the whole stencil, */
   mpmi_node pv = zero, pL[3] = {zero, zero, zero}, pM[3] = {zero, zero, zero}; /* over a plane of rows, */
-  mpmi_node rv = zero, rL = zero, rM = zero;                                   /* over a row of nodes; */
-  mpmi_node node_before = zero, row_before = zero, plane_before = zero;
+  mpmi_node rv = zero, rL = zero, rM = zero;                                   /* over a row of nodes */
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
     if (dim < 3 && i > 0) break;
     MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
@@ -93,24 +68,20 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       const double *node = stencil + (int64_t)values * ((i * edge + j) * (dim == 1 ? 0 : edge));
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
         const mpmi_node vi = mpmi_node_load(all, node + k * values);
-        if (mls)
-          add_moment(width, k, W->w[last][k][p], vi, &rv, &rM);
-        else
-          add(all, part, width, k, p, W->w[last], W->g[last], vi, &node_before, &rv, &rL);
-        if (affine) add_scaled(part, k, W->u[last][k][p], vi, &rM);
+        add(all, mls, width, k, W->w[last][k][p], vi, &rv, &rM);
+        if (!mls) add_slope(part, k, W->g[last][k][p], vi, &rL);
+        if (affine) add_slope(part, k, W->u[last][k][p], vi, &rM);
       }
       if (dim == 1) {
         pv = rv, pL[last] = rL, pM[last] = rM;
         continue;
       }
       const double w = W->w[mid][j][p];
-      if (mls)
-        add_moment(width, j, w, rv, &pv, &pM[mid]);
-      else
-        add(all, part, width, j, p, W->w[mid], W->g[mid], rv, &row_before, &pv, &pL[mid]);
-      if (!mls) add_scaled(part, j, w, rL, &pL[last]);
-      if (affine) add_scaled(part, j, W->u[mid][j][p], rv, &pM[mid]);
-      if (affine || mls) add_scaled(part, j, w, rM, &pM[last]);
+      add(all, mls, width, j, w, rv, &pv, &pM[mid]);
+      if (!mls) add_slope(part, j, W->g[mid][j][p], rv, &pL[mid]);
+      if (!mls) add_slope(part, j, w, rL, &pL[last]);
+      if (affine) add_slope(part, j, W->u[mid][j][p], rv, &pM[mid]);
+      if (affine || mls) add_slope(part, j, w, rM, &pM[last]);
     }
     if (dim < 3) {
       v = pv;
@@ -118,14 +89,12 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       continue;
     }
     const double w = W->w[0][i][p];
-    if (mls)
-      add_moment(width, i, w, pv, &v, &M[0]);
-    else
-      add(all, part, width, i, p, W->w[0], W->g[0], pv, &plane_before, &v, &L[0]);
-    if (affine) add_scaled(part, i, W->u[0][i][p], pv, &M[0]);
+    add(all, mls, width, i, w, pv, &v, &M[0]);
+    if (!mls) add_slope(part, i, W->g[0][i][p], pv, &L[0]);
+    if (affine) add_slope(part, i, W->u[0][i][p], pv, &M[0]);
     for (int32_t k = 1; k < dim; ++k) {
-      if (!mls) add_scaled(part, i, w, pL[k], &L[k]);
-      if (affine || mls) add_scaled(part, i, w, pM[k], &M[k]);
+      if (!mls) add_slope(part, i, w, pL[k], &L[k]);
+      if (affine || mls) add_slope(part, i, w, pM[k], &M[k]);
     }
   }
   mpmi_store4(out->v + 4 * p, mpmi_node_low(all, v));
@@ -196,15 +165,14 @@ MPMI_INLINE int32_t has_hole(const double *volume, int64_t n) {
   return !(mpmi_lanes_smallest(smallest) > 0.0);
 }
 
-/* Takes back what was gathered for holes, of whose nodes nothing is known. */
-MPMI_INLINE void clear_holes(const double *volume, int64_t n, mpmi_gathered *out) {
-  for (int64_t p = 0; p < n; ++p) {
-    if (volume[p] > 0.0) continue;
-    for (int32_t c = 0; c < 4; ++c) {
-      out->v[4 * p + c] = out->dv[4 * p + c] = 0.0;
-      for (int32_t k = 0; k < 3; ++k) out->L[k][4 * p + c] = out->M[k][4 * p + c] = 0.0;
+/* Takes the weight from holes, of whose nodes nothing is known. */
+MPMI_INLINE void mask_holes(int32_t width, int32_t form, const double *volume, int64_t n, mpmi_weights *W) {
+  for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
+      const double live = volume[p] > 0.0 ? 1.0 : 0.0;
+      W->w[0][k][p] *= live;
+      if (form != MPMI_GATHER_MLS) W->g[0][k][p] *= live;
+      if (form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE) W->u[0][k][p] *= live;
     }
-  }
 }
 
 MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t begin,
@@ -215,12 +183,13 @@ MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, const mp
   for (int64_t s = 0; s < count; s += MPMI_CHUNK) {
     const int64_t n = count - s < MPMI_CHUNK ? count - s : MPMI_CHUNK;
     job->weights(job->axis, job->need, &job->points, begin + s, n, &W);
+    if (has_hole(job->initial_volume + begin + s, n))
+      mask_holes(width, form, job->initial_volume + begin + s, n, &W);
     const int64_t ahead = mpmi_ahead(&job->streams, begin + s);
     for (int64_t p = 0; p < n; ++p) {
       mpmi_prefetch(&job->streams, ahead, p);
       gather_particle(dim, width, form, &W, p, job->tile, &out);
     }
-    if (has_hole(job->initial_volume + begin + s, n)) clear_holes(job->initial_volume + begin + s, n, &out);
     for (int64_t q = 0; q < mpmi_whole_chunks(n); q += MPMI_LANES)
       hand_on(dim, width, form, job, q, s + q, &W, &out, &made);
   }

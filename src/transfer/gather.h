@@ -17,7 +17,7 @@ enum {
   MPMI_GATHER_BOTH_AFFINE, /* velocity, its change, L and C */
   MPMI_GATHER_FORMS
 };
-/* Returns what the tile takes of nodes: on fewer than three axes a velocity and its change are four values. */
+/* Returns what the tile takes of nodes: below three axes a velocity and its change are four values. */
 static inline int32_t mpmi_gather_takes(int32_t dim, int32_t form) {
   return form < MPMI_GATHER_BOTH ? MPMI_TAKE_HALF : dim < 3 ? MPMI_TAKE_PAIRS : MPMI_TAKE_ALL;
 }

@@ -15,8 +15,9 @@ enum { LATTICES = sizeof lattices / sizeof *lattices };
 static const double origins[] = {0.0, 0.7, -1.0 / 3.0, 2.3};
 enum { ORIGINS = sizeof origins / sizeof *origins };
 
-/* Fills what, of two cantilevers that bend towards each other, with the strain energy and the largest component
- * of stress. One ends where the last node is above its particles, the other where it is below. */
+/* Fills what, of two cantilevers that reach towards each other and bend, with the strain energy and the
+ * largest component of stress. One ends where the last node is above its particles, the other where it is
+ * below. */
 static void bend(const lattice *on, int32_t scheme, int32_t lagrangian, int32_t isa, double origin,
                  double what[2]) {
   world w;

@@ -45,42 +45,6 @@ START_TEST(translation_is_free_of_stress) {
 }
 END_TEST
 
-static const double common_velocity[3] = {0.3, -0.7, 1.1};
-
-static mpm_status prescribe_all(void *user, const mpm_node_batch *b, uint8_t *prescribed, double *velocity) {
-  (void)user;
-  for (int32_t k = 0; k < b->dim; ++k)
-    for (int64_t i = 0; i < b->n; ++i) {
-      prescribed[k * b->ld + i] = 1;
-      velocity[k * b->ld + i] = common_velocity[k];
-    }
-  return MPM_OK;
-}
-
-/* Nodes that have one velocity give it to particles to the last bit, and no gradient: stencils three nodes wide
- * are summed by the steps between nodes. */
-START_TEST(one_velocity_has_no_gradient) {
-  static const int32_t bases[] = {MPM_BSPLINE2, MPM_GIMP, MPM_UGIMP};
-  const double low[3] = {1.0, 2.0, 0.5}, high[3] = {2.0, 3.0, 1.5};
-  const int32_t dim = 1 + _i % 3;
-  world w;
-  world_desc desc = world_default(dim, 20, 0.25);
-  desc.grid.basis = bases[_i / 3];
-  desc.stepper.transfer = MPM_APIC;
-  mpm_particles *set = world_open(&w, &desc);
-  const int64_t n = world_fill(&w, set, low, high, 2);
-  ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, prescribe_all, NULL));
-  for (int32_t i = 0; i < 40; ++i) world_step(&w, 0.01);
-  double *v = fetch(&w, set, "velocity", dim), *F = fetch(&w, set, "deformation_gradient", 9);
-  for (int64_t p = 0; p < n; ++p) {
-    for (int32_t k = 0; k < dim; ++k) ck_assert(v[k * n + p] == common_velocity[k]);
-    for (int32_t c = 0; c < 9; ++c) ck_assert(F[c * n + p] == (c % 4 == 0));
-  }
-  free(v), free(F);
-  world_close(&w);
-}
-END_TEST
-
 static mpm_status fall(void *user, const mpm_particle_batch *b, double *add) {
   const double *g = user;
   for (int32_t k = 0; k < b->dim; ++k)
@@ -220,7 +184,6 @@ Suite *exact_suite(void) {
   tcase_set_tags(motion, "long");
   tcase_set_timeout(motion, 30.0);
   tcase_add_loop_test(motion, translation_is_free_of_stress, 0, METHODS);
-  tcase_add_loop_test(motion, one_velocity_has_no_gradient, 0, 9);
   tcase_add_loop_test(motion, free_fall, 0, 4 * METHODS);
   tcase_add_loop_test(motion, single_particle_oscillates, 0, 2);
   suite_add_tcase(suite, basis_case());
