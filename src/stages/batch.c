@@ -104,7 +104,7 @@ static void choose_form(mpmi_batch *b) {
     b->need = 0;
     return;
   }
-  b->need = MPMI_NEED_GRADIENT | (matrix ? MPMI_NEED_MOMENT : 0);
+  b->need = MPMI_NEED_GRADIENT | (matrix ? MPMI_NEED_MOMENT : MPMI_NO_FIRST);
   if (increments)
     b->form = matrix ? MPMI_GATHER_BOTH_AFFINE : MPMI_GATHER_BOTH;
   else

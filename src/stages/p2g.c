@@ -109,7 +109,8 @@ static void choose_form(p2g_job *job) {
   if (mpmi_has_increments(job->to)) {
     const int32_t plain = settings->context->works_by_halves ? MPMI_SCATTER_8_HALVES : MPMI_SCATTER_8;
     job->form = job->affine ? MPMI_SCATTER_8_AFFINE : plain;
-    job->need = moments == MPMI_NEED_MLS ? moments : MPMI_NEED_GRADIENT | (job->affine ? moments : 0);
+    job->need =
+        moments == MPMI_NEED_MLS ? moments : MPMI_NEED_GRADIENT | (job->affine ? moments : MPMI_NO_FIRST);
   } else if (job->affine && settings->grid->family >= MPMI_FAMILY_OPEN_BSPLINE2) {
     job->form = MPMI_SCATTER_4_UNEVEN;
     job->need = MPMI_NEED_MOMENT;

@@ -120,8 +120,8 @@ MPMI_INLINE void mpmi_find_nodes(int32_t dim, int32_t width, int64_t n, double (
  * leads from a position to the place of its stencil stays in registers. */
 #define MPMI_BASIS_LANES_IN(dim, name, width)                                                                \
   MPMI_INLINE void name##_chunk_##dim(const mpmi_axis *axis, int32_t gradient, int32_t placed,               \
-                                      const mpmi_points *points, int64_t begin, int64_t n,                   \
-                                      mpmi_weights *W) {                                                     \
+                                      int32_t keeps_first, const mpmi_points *points, int64_t begin,         \
+                                      int64_t n, mpmi_weights *W) {                                          \
     const double edge = MPMI_TILE_EDGE(dim, width);                                                          \
     for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {                                         \
       mpmi_lanes node = {0.0};                                                                               \
@@ -135,7 +135,7 @@ MPMI_INLINE void mpmi_find_nodes(int32_t dim, int32_t width, int64_t n, double (
           mpmi_lanes_store(W->w[k][i] + s, w[i]);                                                            \
           if (gradient) mpmi_lanes_store(W->g[k][i] + s, g[i]);                                              \
         }                                                                                                    \
-        mpmi_lanes_store(W->first[k] + s, first);                                                            \
+        if (keeps_first) mpmi_lanes_store(W->first[k] + s, first);                                           \
         node = k ? node * edge + place : place;                                                              \
       }                                                                                                      \
       if (placed) mpmi_lanes_store_int32(W->node + s, node);                                                 \
@@ -146,11 +146,13 @@ MPMI_INLINE void mpmi_find_nodes(int32_t dim, int32_t width, int64_t n, double (
   void KERNEL(name##_##dim)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,   \
                             int64_t n, mpmi_weights *W) {                                                    \
     if (need & MPMI_NO_PLACE)                                                                                \
-      name##_chunk_##dim(axis, (need & MPMI_NEED_GRADIENT) != 0, 0, points, begin, n, W);                    \
+      name##_chunk_##dim(axis, (need & MPMI_NEED_GRADIENT) != 0, 0, 1, points, begin, n, W);                 \
+    else if (need & MPMI_NO_FIRST)                                                                           \
+      name##_chunk_##dim(axis, 1, 1, 0, points, begin, n, W);                                                \
     else if (need & MPMI_NEED_GRADIENT)                                                                      \
-      name##_chunk_##dim(axis, 1, 1, points, begin, n, W);                                                   \
+      name##_chunk_##dim(axis, 1, 1, 1, points, begin, n, W);                                                \
     else                                                                                                     \
-      name##_chunk_##dim(axis, 0, 1, points, begin, n, W);                                                   \
+      name##_chunk_##dim(axis, 0, 1, 1, points, begin, n, W);                                                \
     for (int32_t k = 0; k < (dim) && need & (MPMI_NEED_MOMENT | MPMI_NEED_MLS); ++k) {                       \
       const mpmi_stencils at = {W->w[k], W->g[k], W->first[k], NULL, NULL};                                  \
       mpmi_moments(width, EVEN, axis[k].spacing, need, n, &at, W->u[k], W->inverse_moment[k]);               \

@@ -41,12 +41,13 @@ typedef struct mpmi_weights {
 /* h^2 / D of the MLS form: quadratic and cubic B-splines have D = h^2 / 4 and h^2 / 3 everywhere. */
 #define MPMI_MLS_INVERSE(width) ((width) == 3 ? 4.0 : 3.0)
 
-/* What a transfer needs beside w and first: bits. */
+/* What a transfer needs beside w and first, and what it can do without: bits. */
 enum {
   MPMI_NEED_GRADIENT = 1, /* g */
   MPMI_NEED_MOMENT = 2,   /* u and inverse_moment */
   MPMI_NEED_MLS = 4,      /* g, u and inverse_moment, with g = u / D */
-  MPMI_NO_PLACE = 8       /* do not find node: the particles may lie anywhere */
+  MPMI_NO_PLACE = 8,      /* do not find node: the particles may lie anywhere */
+  MPMI_NO_FIRST = 16      /* first need not be kept, beside gradients */
 };
 
 /* Computes the weights of n particles (MPMI_CHUNK of them) along all axes. Each basis has such a function for
