@@ -34,7 +34,8 @@ static int32_t are_near(const mpmi_blocks *b, const mpmi_nodal *nodes) {
 void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block,
                      const mpmi_spans *spans, const mpmi_nodal *nodes, int32_t begin, int32_t end) {
   mpmi_box box;
-  for (int32_t n = begin; n < end && !are_near(b, nodes); ++n)
+  if (are_near(b, nodes)) return;
+  for (int32_t n = begin; n < end; ++n)
     if (find_box(b, spans, block, n, nodes, nodes->at, 0, &box)) kernels->fetch_box(nodes->values, &box);
 }
 

@@ -27,9 +27,9 @@ struct mpm_operator {
   int64_t *row_start;
   int32_t *column;
   double *value;
-  int64_t numbered,
-      pattern_id;   /* the matrix' pattern that numbers are of, -1: of none; what the host is told */
-  int64_t *rows_of; /* of several parts: rows of each */
+  int64_t numbered;   /* the matrix' pattern that numbers are of, -1: of none */
+  int64_t pattern_id; /* what the host is told */
+  int64_t *rows_of;   /* of several parts: rows of each */
   char *slab;
   int64_t slab_capacity, row_start_capacity, column_capacity, value_capacity, rows_of_capacity;
 };

@@ -77,6 +77,25 @@ pub(crate) struct Entry {
     pub core: Arc<Core>,
 }
 
+/// What owns something that a stepper may take over derefs to it.
+macro_rules! owns {
+    ($owner:ident, $lent:ident) => {
+        impl std::ops::Deref for $owner {
+            type Target = $lent;
+            fn deref(&self) -> &$lent {
+                &self.0
+            }
+        }
+
+        impl std::ops::DerefMut for $owner {
+            fn deref_mut(&mut self) -> &mut $lent {
+                &mut self.0
+            }
+        }
+    };
+}
+pub(crate) use owns;
+
 impl Entry {
     /// The outcome of a call that runs no callbacks of a stepper.
     pub fn done(self, status: i32) -> Result<()> {

@@ -1,8 +1,7 @@
 //! Obstacles: rigid bodies without particles.
 use crate::callback::{alone, shared, user_of, Owned};
-use crate::entry::{Core, Sent};
+use crate::entry::{owns, Core, Sent};
 use crate::{sys, Columns, ContactDesc, ContactInfo, Context, DistanceBatch, Distances, Flow, Result};
-use std::ops::{Deref, DerefMut};
 use std::os::raw::c_void;
 use std::sync::Arc;
 
@@ -101,18 +100,7 @@ pub struct LentObstacle<S: ?Sized = [()]> {
 unsafe impl Send for LentObstacle {}
 unsafe impl Sync for LentObstacle {}
 
-impl Deref for Obstacle {
-    type Target = LentObstacle;
-    fn deref(&self) -> &LentObstacle {
-        &self.0
-    }
-}
-
-impl DerefMut for Obstacle {
-    fn deref_mut(&mut self) -> &mut LentObstacle {
-        &mut self.0
-    }
-}
+owns!(Obstacle, LentObstacle);
 
 impl Obstacle {
     /// Makes an obstacle.

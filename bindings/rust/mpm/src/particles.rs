@@ -1,11 +1,10 @@
 //! Sets of particles.
 use crate::arrays::{fits, pointer, Field};
-use crate::entry::{Core, Sent};
+use crate::entry::{owns, Core, Sent};
 use crate::error::{c_text, c_texts, text_of};
 use crate::view::Lent;
 use crate::{callback::Slot, Flow};
 use crate::{sys, Element, Error, Grid, Material, Result, View, ViewMut};
-use std::ops::{Deref, DerefMut};
 use std::os::raw::c_void;
 use std::sync::Arc;
 
@@ -26,18 +25,7 @@ pub struct LentParticles<S: ?Sized = [()]> {
 unsafe impl Send for LentParticles {}
 unsafe impl Sync for LentParticles {}
 
-impl Deref for Particles {
-    type Target = LentParticles;
-    fn deref(&self) -> &LentParticles {
-        &self.0
-    }
-}
-
-impl DerefMut for Particles {
-    fn deref_mut(&mut self) -> &mut LentParticles {
-        &mut self.0
-    }
-}
+owns!(Particles, LentParticles);
 
 /// What a fill has added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,8 @@
 //! Surfaces: markers without mass that move with the material and carry loads on its boundary.
 use crate::arrays::{fits, pointer, Field};
 use crate::callback::{alone, Owned};
-use crate::entry::{Core, Sent};
+use crate::entry::{owns, Core, Sent};
 use crate::{sys, Columns, Element, Filled, Flow, Grid, MarkerBatch, Result, SurfaceDesc};
-use std::ops::{Deref, DerefMut};
 use std::os::raw::c_void;
 use std::sync::Arc;
 
@@ -35,18 +34,7 @@ pub struct LentSurface<S: ?Sized = [()]> {
 unsafe impl Send for LentSurface {}
 unsafe impl Sync for LentSurface {}
 
-impl Deref for Surface {
-    type Target = LentSurface;
-    fn deref(&self) -> &LentSurface {
-        &self.0
-    }
-}
-
-impl DerefMut for Surface {
-    fn deref_mut(&mut self) -> &mut LentSurface {
-        &mut self.0
-    }
-}
+owns!(Surface, LentSurface);
 
 impl Surface {
     /// Makes a surface without markers.
