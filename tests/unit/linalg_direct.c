@@ -62,6 +62,20 @@ START_TEST(floating_body) {
 }
 END_TEST
 
+/* A small pivot that comes first makes the next ones 1e8 times as large, and where the matrix is singular the
+ * last one is made of their rounding: it is not small. What is left of the right-hand side tells. */
+START_TEST(pivots_of_rounding) {
+  const springs of = {.dim = 3, .block = 3, .reach = 1, .n = {1, 1, 1}, .mass = 1.0};
+  const double small = 0x1p-26, b = 0.5 + 0x1p-6 * (2 * _i + 1);
+  const double c = 2.0 * b - small * b * b; /* exactly: the determinant vanishes */
+  const double value[9] = {small, 1.0, 1.0, 1.0, 0.0, b, 1.0, b, c};
+  springs_build(&A, context, &of);
+  memcpy(A.value, value, sizeof value);
+  A.symmetric = 1;
+  refuse(MPM_SOLVER_LDLT, MPM_SINGULAR, "singular");
+}
+END_TEST
+
 /* A node without any stiffness is the one that is named; held as well, it is none of the system. */
 START_TEST(empty_node) {
   const springs of = {.dim = 2, .block = 2, .reach = 1, .n = {50, 30}, .mass = 0.1};
@@ -264,6 +278,25 @@ START_TEST(inner_cg) {
 }
 END_TEST
 
+/* Conjugate gradients that precondition count the iterations that they take: here no more than there are
+ * unknowns. */
+START_TEST(inner_iterations) {
+  const springs of = {.dim = 1, .block = 1, .reach = 1, .n = {20}, .clamped = 1};
+  springs_build(&A, context, &of);
+  const int64_t n = mpmi_matrix_unknowns(&A);
+  int64_t row;
+  double *r = noise_vector(&A, 3), *z = calloc((size_t)n, sizeof *z);
+  mpmi_system s = {.solver = solver, .context = context, .A = &A, .n = n, .report = &report};
+  ck_ok(context, mpmi_inverse_blocks(&s, &row));
+  ck_ok(context, mpmi_reserve_inner_cg(&s, &row));
+  mpmi_inner_cg inner = {&s, 3000};
+  report.iterations = 7;
+  ck_ok(context, mpmi_times_inner_cg(&inner, r, z));
+  free(r), free(z);
+  ck_between("iterations", (double)report.iterations, 7.0 + 2.0, 7.0 + 20.0);
+}
+END_TEST
+
 /* The kernels of all instruction sets agree to rounding. */
 START_TEST(instruction_sets) {
   const springs of = {.dim = 3,
@@ -305,6 +338,7 @@ TCase *linalg_direct_case(void) {
   tcase_add_checked_fixture(tests, open_solver, close_solver);
   add_sparse(tests, inertia, 12, 5);
   tcase_add_loop_test(tests, floating_body, 0, 5);
+  tcase_add_loop_test(tests, pivots_of_rounding, 0, 8);
   tcase_add_loop_test(tests, empty_node, 0, 2);
   tcase_add_loop_test(tests, equal_nodes, 0, 10);
   tcase_add_test(tests, zero_diagonal);
@@ -313,6 +347,7 @@ TCase *linalg_direct_case(void) {
   tcase_add_test(tests, iteration_first);
   add_sparse(tests, stalled, 1, 2);
   tcase_add_test(tests, inner_cg);
+  tcase_add_test(tests, inner_iterations);
   tcase_add_loop_test(tests, instruction_sets, 0, 2);
   return tests;
 }
