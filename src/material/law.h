@@ -18,7 +18,7 @@ typedef struct mpmi_law_state {
   const char *name, *unit, *text;
 } mpmi_law_state;
 
-/* Why a law gives a particle up: it writes MPMI_REFUSED(k) in the place of the particle's wave speed, for
+/* Why a law gives a particle up: it writes MPMI_REFUSED(k) in the place of the square of its wave speed, for
  * the k-th of the refusals that its description lists, and the step or the call ends with that cause and
  * sentence. What it writes of the particle beside that is of no interest. */
 typedef struct mpmi_law_refusal {
@@ -29,7 +29,8 @@ typedef struct mpmi_law_refusal {
 
 /* Evaluates a law on batch->n particles, whole chunks of them; every array is 64-byte aligned. dim tells
  * which entries of the full tensors can be anything but those of the identity, so that 1-D and 2-D need not
- * pay for 3-D; stress_new has all six rows written for the components that exist in `dim` (xx yy zz; xy in
+ * pay for 3-D; wave_speed gets the square of the speed, because a step needs the roots of few of them;
+ * stress_new has all six rows written for the components that exist in `dim` (xx yy zz; xy in
  * 2-D; yz xz in 3-D), others are left alone. */
 typedef void (*mpmi_law_fn)(const void *constants, int32_t dim, const mpm_material_batch *batch);
 
@@ -62,6 +63,7 @@ typedef struct mpmi_law {
   /* 1: per present volume its strain energy follows from the Cauchy stress alone, which makes it no
    * function of the deformation where the volume changes (stages/dissipation.c) */
   int32_t energy_of_stress;
+  int32_t viscous;   /* 1: it writes the kinematic viscosity */
   int32_t no_sheets; /* 1: it is none that a sheet in plane stress can have */
   /* Says what is wrong with the parameters together, or returns NULL where nothing is. NULL: there is no such
    * check. */
@@ -71,6 +73,7 @@ typedef struct mpmi_law {
   size_t constants_size;
   void (*prepare)(const double *value, void *constants);
   mpmi_law_fn stress;
+  mpmi_law_fn plane_stored; /* stress in 2-D where F has the rows that a set stores, or NULL */
   mpmi_tangent_fn tangent;
   /* 1 when the tangent has major symmetry in 2-D and 3-D too. */
   int32_t (*is_symmetric)(const void *constants);

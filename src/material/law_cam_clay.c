@@ -367,7 +367,7 @@ static void stay(int dim, const mpm_material_batch *batch, int64_t i) {
 MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_batch *batch) {
   const int64_t ld = batch->ld;
   const mpmi_trial in = mpmi_trial_of(batch);
-  double *stress = batch->stress_new, *state = batch->state_new, *wave_speed = batch->wave_speed;
+  double *stress = batch->stress_new, *state = batch->state_new, *wave_speed_squared = batch->wave_speed;
   _Alignas(64) double d[6][MPMI_CHUNK];
   clay_inverse old;
   clay o;
@@ -395,20 +395,21 @@ MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_
       end = o.left[p] > 0.0 ? MPMI_REFUSED(NOT_RETURNED) : end;
       /* by strains far beyond kappa squares of stresses leave the range of doubles */
       end = t.p + t.q + o.pc_new[p] <= 1e150 ? end : MPMI_REFUSED(NOT_RETURNED);
-      wave_speed[i + p] = old.bears[p] > 0.0 ? end : MPMI_REFUSED(UNBEARABLE);
+      wave_speed_squared[i + p] = old.bears[p] > 0.0 ? end : MPMI_REFUSED(UNBEARABLE);
     }
     for (int p = 0; p < MPMI_CHUNK; ++p)
       if (!(o.has[p] > 0.0)) stay(dim, batch, i + p);
   }
 }
 
-/* Computes wave speed and energy from stress and state, and refuses those that have none. The stiffness of
- * the fastest wave is at most that of compression and shear, what couples them, and the largest pressure. */
+/* Computes squared wave speed and energy from stress and state, and refuses those that have none. The
+ * stiffness of the fastest wave is at most that of compression and shear, what couples them, and the largest
+ * pressure. */
 MPMI_INLINE void clay_outputs(int dim, const clay_constants *c, const mpm_material_batch *batch) {
   const int64_t ld = batch->ld;
   const double *deformation = batch->F, *stress = batch->stress_new, *state = batch->state_new;
   const double unborne = batch->dt > 0.0 ? MPMI_REFUSED(TOO_SHEARED) : MPMI_REFUSED(UNBEARABLE);
-  double *wave_speed = batch->wave_speed, *energy = batch->energy;
+  double *wave_speed_squared = batch->wave_speed, *energy = batch->energy;
   double missing[MPMI_CHUNK];
   clay_inverse o;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
@@ -427,9 +428,9 @@ MPMI_INLINE void clay_outputs(int dim, const clay_constants *c, const mpm_materi
       double X = o.X[p], mu = c->mu + c->alpha * X, e_s = (1.0 / 3.0) * o.q[p] / mu;
       double stiffness = o.p[p] * c->kappa_inverse + (4.0 / 3.0) * (c->mu + c->alpha * o.p[p]) +
                          (8.0 / 3.0) * c->couples * (X * e_s) + (o.p[p] + (2.0 / 3.0) * o.q[p]);
-      double refused = wave_speed[i + p] < 0.0 ? wave_speed[i + p] : missing[p];
-      double speed = o.bears[p] > 0.0 ? sqrt(stiffness * c->density_inverse) : unborne;
-      wave_speed[i + p] = refused < 0.0 ? refused : speed;
+      double refused = wave_speed_squared[i + p] < 0.0 ? wave_speed_squared[i + p] : missing[p];
+      double speed_squared = o.bears[p] > 0.0 ? stiffness * c->density_inverse : unborne;
+      wave_speed_squared[i + p] = refused < 0.0 ? refused : speed_squared;
       energy[i + p] = c->kappa * X + 1.5 * mu * (e_s * e_s);
     }
   }

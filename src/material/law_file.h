@@ -59,6 +59,18 @@ MPMI_INLINE int64_t mpmi_batch_items(const mpm_material_batch *batch) {
       tangent_of(1, c, batch, rows);                                                                         \
   }
 
+/* Does so from stress_of(dim, stored, constants, batch) of a law that looks at F alone, and makes a
+ * plane_kernel for batches in 2-D whose F has the rows that a set stores. */
+#define MPMI_LAW_KERNELS_OF_F(type, stress_of, tangent_of)                                                   \
+  MPMI_INLINE void stress_of##_of_rows(int dim, const type *c, const mpm_material_batch *batch) {            \
+    stress_of(dim, 0, c, batch);                                                                             \
+  }                                                                                                          \
+  static void plane_kernel(const void *constants, int32_t dim, const mpm_material_batch *batch) {            \
+    (void)dim;                                                                                               \
+    stress_of(2, 1, constants, batch);                                                                       \
+  }                                                                                                          \
+  MPMI_LAW_KERNELS(type, stress_of##_of_rows, tangent_of)
+
 /* For is_symmetric: the tangent is symmetric where the stress is a function of F alone, and is not where the
  * stress depends on the step. */
 static inline int32_t mpmi_symmetric(const void *constants) {

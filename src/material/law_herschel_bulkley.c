@@ -133,7 +133,7 @@ MPMI_INLINE void add_pressure(int dim, const flow_constants *constants, const mp
   const double shear_energy = 0.5 * c.elastic.by_deviator;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F;
-  double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
+  double *stress = batch->stress_new, *wave_speed_squared = batch->wave_speed, *energy = batch->energy;
   MPMI_IVDEP
   for (int64_t i = 0; i < n; ++i) {
     double j_minus_1 = mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, deformation, ld, i)), J = 1.0 + j_minus_1;
@@ -142,8 +142,8 @@ MPMI_INLINE void add_pressure(int dim, const flow_constants *constants, const mp
     double square = J * J * mpmi_square(s);
     mpmi_store_sym(dim, stress, ld, i, mpmi_shifted(1.0, s, at.mean));
     energy[i] = at.energy + shear_energy * square;
-    wave_speed[i] = sqrt((c.bulk * at.stiffening + c.elastic.p_wave + sqrt((2.0 / 3.0) * square)) *
-                         c.elastic.density_inverse);
+    wave_speed_squared[i] =
+        (c.bulk * at.stiffening + c.elastic.p_wave + sqrt((2.0 / 3.0) * square)) * c.elastic.density_inverse;
   }
 }
 

@@ -10,16 +10,17 @@
 
 static const mpmi_law_param params[] = {PARAMS_ELASTIC};
 
-MPMI_INLINE void neo_hookean(int dim, const mpmi_elastic *c, const mpm_material_batch *batch) {
+MPMI_INLINE void neo_hookean(int dim, int stored, const mpmi_elastic *c, const mpm_material_batch *batch) {
   const double lambda = c->lambda, mu = c->mu;
   const double density_inverse = c->density_inverse;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F;
-  double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
+  double *stress = batch->stress_new, *wave_speed_squared = batch->wave_speed, *energy = batch->energy;
   MPMI_IVDEP
   for (int64_t i = 0; i < n; ++i) {
     /* In terms of H = F - I, so that small strains keep their digits. */
-    mpmi_mat h = mpmi_load_F_minus_1(dim, deformation, ld, i);
+    mpmi_mat h = stored ? mpmi_load_stored_F_minus_1(deformation, ld, i)
+                        : mpmi_load_F_minus_1(dim, deformation, ld, i);
     mpmi_sym e = mpmi_left_cauchy_green_minus_1(dim, h);
     double j_minus_1 = mpmi_J_minus_1(dim, h), j_inverse = 1.0 / (1.0 + j_minus_1);
     double log_j = mpmi_lane_log1p(j_minus_1);
@@ -31,7 +32,7 @@ MPMI_INLINE void neo_hookean(int dim, const mpmi_elastic *c, const mpm_material_
     /* The acoustic tensor (J c_ijkl n_j n_l + tau_jl n_j n_l delta_ik) / density has the eigenvalues
      * mu b_nn (transverse) and lambda + mu - lambda ln J + mu b_nn (along n), over the initial density. */
     double along = mpmi_max(lambda + mu - lambda * log_j, 0.0) + mu * mpmi_largest_stretch_squared(dim, e);
-    wave_speed[i] = sqrt(mpmi_max(along, mu) * density_inverse);
+    wave_speed_squared[i] = mpmi_max(along, mu) * density_inverse;
   }
 }
 
@@ -51,7 +52,7 @@ MPMI_INLINE void neo_hookean_tangent(int dim, const mpmi_elastic *c, const mpm_m
   }
 }
 
-MPMI_LAW_KERNELS(mpmi_elastic, neo_hookean, neo_hookean_tangent)
+MPMI_LAW_KERNELS_OF_F(mpmi_elastic, neo_hookean, neo_hookean_tangent)
 
 const mpmi_law KERNEL(law_neo_hookean) = {
     .name = "neo_hookean",
@@ -60,6 +61,7 @@ const mpmi_law KERNEL(law_neo_hookean) = {
     .constants_size = sizeof(mpmi_elastic),
     .prepare = mpmi_elastic_prepare,
     .stress = stress_kernel,
+    .plane_stored = plane_kernel,
     .tangent = tangent_kernel,
     .is_symmetric = mpmi_symmetric,
 };

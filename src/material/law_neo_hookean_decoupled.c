@@ -35,17 +35,18 @@ MPMI_INLINE double stiffest(double volumetric, double mean, double low, double h
   return 0.5 * (along + high) + sqrt(half * half + between * between);
 }
 
-MPMI_INLINE void neo_hookean_decoupled(int dim, const decoupled_constants *c,
+MPMI_INLINE void neo_hookean_decoupled(int dim, int stored, const decoupled_constants *c,
                                        const mpm_material_batch *batch) {
   const double kappa = c->kappa, mu = c->mu;
   const double density_inverse = c->density_inverse;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F;
-  double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
+  double *stress = batch->stress_new, *wave_speed_squared = batch->wave_speed, *energy = batch->energy;
   MPMI_IVDEP
   for (int64_t i = 0; i < n; ++i) {
     /* In terms of H = F - I and e = F F^T - I, so that small strains keep their digits. */
-    mpmi_mat h = mpmi_load_F_minus_1(dim, deformation, ld, i);
+    mpmi_mat h = stored ? mpmi_load_stored_F_minus_1(deformation, ld, i)
+                        : mpmi_load_F_minus_1(dim, deformation, ld, i);
     mpmi_sym e = mpmi_left_cauchy_green_minus_1(dim, h);
     double j_minus_1 = mpmi_J_minus_1(dim, h), j_inverse = 1.0 / (1.0 + j_minus_1);
     double log_j = mpmi_lane_log1p(j_minus_1);
@@ -60,7 +61,7 @@ MPMI_INLINE void neo_hookean_decoupled(int dim, const decoupled_constants *c,
     double stiffness = stiffest(kappa - kappa * log_j, mu_bar * (1.0 + (1.0 / 3.0) * trace),
                                 mu_bar * mpmi_smallest_stretch_squared(dim, e),
                                 mu_bar * mpmi_largest_stretch_squared(dim, e));
-    wave_speed[i] = sqrt(stiffness * density_inverse);
+    wave_speed_squared[i] = stiffness * density_inverse;
   }
 }
 
@@ -88,7 +89,7 @@ MPMI_INLINE void neo_hookean_decoupled_tangent(int dim, const decoupled_constant
   }
 }
 
-MPMI_LAW_KERNELS(decoupled_constants, neo_hookean_decoupled, neo_hookean_decoupled_tangent)
+MPMI_LAW_KERNELS_OF_F(decoupled_constants, neo_hookean_decoupled, neo_hookean_decoupled_tangent)
 
 const mpmi_law KERNEL(law_neo_hookean_decoupled) = {
     .name = "neo_hookean_decoupled",
@@ -97,6 +98,7 @@ const mpmi_law KERNEL(law_neo_hookean_decoupled) = {
     .constants_size = sizeof(decoupled_constants),
     .prepare = prepare,
     .stress = stress_kernel,
+    .plane_stored = plane_kernel,
     .tangent = tangent_kernel,
     .is_symmetric = mpmi_symmetric,
 };

@@ -32,7 +32,7 @@ MPMI_INLINE void compression(int dim, const fluid_constants *c, const mpm_materi
   const double c_squared = c->bulk * density_inverse;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F;
-  double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
+  double *stress = batch->stress_new, *wave_speed_squared = batch->wave_speed, *energy = batch->energy;
   double *kinematic_viscosity = batch->kinematic_viscosity;
   MPMI_IVDEP
   for (int64_t i = 0; i < n; ++i) {
@@ -41,7 +41,7 @@ MPMI_INLINE void compression(int dim, const fluid_constants *c, const mpm_materi
     mpmi_sym s = {at.mean, at.mean, at.mean, 0.0, 0.0, 0.0};
     mpmi_store_sym(dim, stress, ld, i, s);
     energy[i] = at.energy;
-    wave_speed[i] = sqrt(c_squared * at.stiffening);
+    wave_speed_squared[i] = c_squared * at.stiffening;
     kinematic_viscosity[i] = nu * (1.0 + j_minus_1);
   }
 }
@@ -133,6 +133,7 @@ const mpmi_law KERNEL(law_newtonian_fluid) = {
     .name = "newtonian_fluid",
     MPMI_PARAMS(params),
     .stress_from_F = 1,
+    .viscous = 1,
     .kinematics = MPMI_F_DILATES,
     .rest = MPMI_REST_PRESSURE,
     .no_sheets = 1,

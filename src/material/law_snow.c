@@ -77,11 +77,11 @@ MPMI_INLINE void set_stress(const snow_constants *c, const snow_point *r, int p,
     o->tau[a][p] = r->h * (2.0 * c->mu * r->stretch[a] * (1.0 + r->stretch[a]) + volumetric);
 }
 
-/* Writes stress, energy and the speed of the fastest elastic wave, h (2 mu S^2 + lambda J_E^2) / density
- * for the largest S; leaves b - I after the return in o->tau. */
+/* Writes stress, energy and the squared speed of the fastest elastic wave, h (2 mu S^2 + lambda J_E^2) /
+ * density for the largest S; leaves b - I after the return in o->tau. */
 MPMI_INLINE void snow_chunk(int dim, const snow_constants *c, const mpm_material_batch *batch, int64_t begin,
                             mpmi_principal *o) {
-  double *wave_speed = batch->wave_speed + begin, *energy = batch->energy + begin;
+  double *wave_speed_squared = batch->wave_speed + begin, *energy = batch->energy + begin;
   _Alignas(64) double be[3][MPMI_CHUNK];
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
@@ -89,7 +89,7 @@ MPMI_INLINE void snow_chunk(int dim, const snow_constants *c, const mpm_material
     double x = r.stretch[0], y = r.stretch[1], z = r.stretch[2], J_E = 1.0 + r.J_E_minus_1;
     double most = 1.0 + mpmi_max(mpmi_max(x, y), z);
     set_stress(c, &r, p, o);
-    wave_speed[p] = sqrt(r.h * (2.0 * c->mu * most * most + c->lambda * J_E * J_E) * c->density_inverse);
+    wave_speed_squared[p] = r.h * (2.0 * c->mu * most * most + c->lambda * J_E * J_E) * c->density_inverse;
     energy[p] = r.h * (c->mu * (x * x + y * y + z * z) + 0.5 * c->lambda * r.J_E_minus_1 * r.J_E_minus_1);
     for (int a = 0; a < 3; ++a) be[a][p] = r.stretch[a] * (2.0 + r.stretch[a]);
   }

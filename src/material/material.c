@@ -256,6 +256,18 @@ mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t dim,
   return MPM_OK;
 }
 
+void mpmi_material_evaluate_stored(const mpm_material *material, const mpm_material_batch *batch) {
+  material->law->plane_stored(material->constants, 2, batch);
+}
+
+int32_t mpmi_material_takes_stored(const mpm_material *material, int32_t dim) {
+  return dim != 2 || (material->law && material->law->plane_stored);
+}
+
+int32_t mpmi_may_be_viscous(const mpm_material *material) {
+  return material->law ? material->law->viscous : 1;
+}
+
 int32_t mpmi_material_stress_from_F(const mpm_material *material) {
   return material->law ? material->law->stress_from_F : 0;
 }

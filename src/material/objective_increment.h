@@ -118,19 +118,19 @@ MPMI_INLINE double mpmi_square(mpmi_sym s) {
   return 2.0 * (s.xy * s.xy + s.yz * s.yz + s.xz * s.xz) + s.xx * s.xx + s.yy * s.yy + s.zz * s.zz;
 }
 
-/* Computes the elastic wave speed at the current density, and the energy J/2 stress : S : stress per initial
- * volume. */
+/* Computes the squared elastic wave speed at the current density, and the energy J/2 stress : S : stress per
+ * initial volume. */
 MPMI_INLINE void mpmi_elastic_outputs(int dim, const mpmi_elastic *c, const mpm_material_batch *batch) {
   const double p_wave = c->p_wave_squared;
   const double by_mean = c->mean_energy, by_deviator = c->shear_energy;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F, *stress = batch->stress_new;
-  double *wave_speed = batch->wave_speed, *energy = batch->energy;
+  double *wave_speed_squared = batch->wave_speed, *energy = batch->energy;
   MPMI_IVDEP
   for (int64_t i = 0; i < n; ++i) {
     double j = 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, deformation, ld, i)), mean;
     mpmi_sym s = mpmi_deviator(mpmi_load_sym(dim, stress, ld, i), &mean);
-    wave_speed[i] = sqrt(p_wave * j);
+    wave_speed_squared[i] = p_wave * j;
     energy[i] = j * (by_mean * mean * mean + by_deviator * mpmi_square(s));
   }
 }

@@ -177,7 +177,7 @@ MPMI_INLINE mpmi_sym mpmi_trial_strain(int dim, mpmi_frame in, int64_t i, double
   return mpmi_strain_of_b(dim, mpmi_trial_b(dim, in, i, J));
 }
 
-/* Computes the speed of the fastest elastic wave, whose stiffness is bulk + 4/3 mu less the smallest
+/* Computes the squared speed of the fastest elastic wave, whose stiffness is bulk + 4/3 mu less the smallest
  * principal stress, which is at least -p - 2/3 q; and the energy of the elastic strain that belongs to
  * the stress. */
 MPMI_INLINE void mpmi_frame_outputs(int dim, const mpmi_hencky *c, const mpm_material_batch *batch) {
@@ -185,13 +185,13 @@ MPMI_INLINE void mpmi_frame_outputs(int dim, const mpmi_hencky *c, const mpm_mat
   const double by_mean = 1.5 * c->by_mean, by_deviator = 0.5 * c->by_deviator;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F, *stress = batch->stress_new;
-  double *wave_speed = batch->wave_speed, *energy = batch->energy;
+  double *wave_speed_squared = batch->wave_speed, *energy = batch->energy;
   MPMI_IVDEP
   for (int64_t i = 0; i < n; ++i) {
     double J = 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, deformation, ld, i)), mean;
     double square = mpmi_square(mpmi_deviator(mpmi_load_sym(dim, stress, ld, i), &mean));
     double pressed = J * (sqrt((2.0 / 3.0) * square) - mean);
-    wave_speed[i] = sqrt((p_wave + mpmi_max(pressed, 0.0)) * density_inverse);
+    wave_speed_squared[i] = (p_wave + mpmi_max(pressed, 0.0)) * density_inverse;
     energy[i] = J * J * (by_mean * mean * mean + by_deviator * square);
   }
 }

@@ -23,7 +23,7 @@ MPMI_INLINE void spatial(int32_t dim, const double *const *F, int64_t ld, double
 MPMI_INLINE void speeds(int32_t dim, const double *const *F, double *wave_speed, double *viscosity,
                         int64_t n) {
   for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
-    mpmi_lanes inverse[3][3], most = {0.0}, root;
+    mpmi_lanes inverse[3][3], most = {0.0};
     mpmi_inverse_load(dim, F, s, inverse);
     for (int32_t r = 0; r < dim; ++r) {
       mpmi_lanes row = {0.0};
@@ -34,8 +34,7 @@ MPMI_INLINE void speeds(int32_t dim, const double *const *F, double *wave_speed,
       }
       most = mpmi_lanes_max(most, row);
     }
-    for (int32_t i = 0; i < MPMI_LANES; ++i) root[i] = __builtin_sqrt(most[i]);
-    mpmi_lanes_store(wave_speed + s, mpmi_lanes_load(wave_speed + s) * root);
+    mpmi_lanes_store(wave_speed + s, mpmi_lanes_load(wave_speed + s) * mpmi_lanes_sqrt(most));
     mpmi_lanes_store(viscosity + s, mpmi_lanes_load(viscosity + s) * most);
   }
 }

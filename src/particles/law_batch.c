@@ -31,6 +31,7 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
   double *at = memory;
   b->ld = ld;
   b->fault = (mpmi_law_fault){MPM_OK, -1, ""};
+  b->stored = b->squares = 0;
   b->F = at, at += 9 * ld;
   b->F_inc = at, at += 9 * ld;
   b->L = at, at += 9 * ld;
@@ -165,12 +166,25 @@ static mpm_status find_refused(mpmi_law_batch *b, const mpmi_law *law) {
   return b->fault.cause;
 }
 
+/* A built-in law gives the squares of wave speeds. */
+static void take_roots(mpmi_law_batch *b) {
+  for (int64_t p = 0; p < b->batch.n; ++p) b->wave_speed[p] = sqrt(b->wave_speed[p]);
+}
+
 mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_material *material, int32_t dim) {
   b->fault.cause = MPM_OK;
   if (!material->law) preset_optional(b, b->batch.n);
-  const mpm_status status = mpmi_material_evaluate(material, dim, &b->batch);
+  mpm_status status = MPM_OK;
+  if (b->stored && dim == 2)
+    mpmi_material_evaluate_stored(material, &b->batch);
+  else
+    status = mpmi_material_evaluate(material, dim, &b->batch);
   if (status) return status;
-  if (material->law) return find_refused(b, material->law);
+  if (material->law) {
+    if (find_refused(b, material->law)) return b->fault.cause;
+    if (!b->squares) take_roots(b);
+    return MPM_OK;
+  }
   /* Whatever the host made of inert slots must not get into sums. */
   for (int64_t p = 0; p < b->batch.n; ++p) {
     if (b->batch.id[p] >= 0) {

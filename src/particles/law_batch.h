@@ -32,6 +32,8 @@ typedef struct mpmi_law_batch {
   mpm_material_batch batch;
   mpmi_lookup lookup;
   mpmi_law_fault fault; /* of the last run */
+  int32_t stored;       /* 1: F and the new stress are those of the set, with its rows */
+  int32_t squares;      /* 1: leaves the squares of wave speeds that a built-in law gives */
 } mpmi_law_batch;
 
 int64_t mpmi_law_batch_length(const mpm_material *material);

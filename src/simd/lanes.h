@@ -75,10 +75,20 @@ MPMI_INLINE double mpmi_lanes_smallest(mpmi_lanes v) {
   for (int32_t i = 1; i < MPMI_LANES; ++i) smallest = v[i] < smallest ? v[i] : smallest;
   return smallest;
 }
+MPMI_INLINE mpmi_lanes mpmi_lanes_sqrt(mpmi_lanes v) {
+  for (int32_t i = 0; i < MPMI_LANES; ++i) v[i] = __builtin_sqrt(v[i]);
+  return v;
+}
+/* Returns the flag where a bit of the mask is set, else 0. */
+#if defined(__AVX512F__) && MPMI_WIDTH == 8
+#define MPMI_ANY(mask) (_mm512_test_epi64_mask((__m512i)(mask), (__m512i)(mask)) != 0)
+#elif defined(__AVX2__) && MPMI_WIDTH == 4
+#define MPMI_ANY(mask) (!_mm256_testz_si256((__m256i)(mask), (__m256i)(mask)))
+#else
+#define MPMI_ANY(mask) (((mask)[0] | (mask)[1]) != 0)
+#endif
 MPMI_INLINE uint32_t mpmi_lanes_any(mpmi_mask mask, uint32_t flag) {
-  int64_t any = 0;
-  for (int32_t i = 0; i < MPMI_LANES; ++i) any |= mask[i];
-  return any ? flag : 0u;
+  return MPMI_ANY(mask) ? flag : 0u;
 }
 
 #endif

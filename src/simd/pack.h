@@ -95,6 +95,16 @@ MPMI_INLINE void mpmi_separate(const double *in, mpmi_lanes *out) {
 #endif
 #endif
 
+/* Turns eight registers, of which each has a value for every lane, into eight values for each lane. */
+MPMI_INLINE void mpmi_lanes_turn(const double *const *in, double *out) {
+#if MPMI_WIDTH == 2
+  for (int32_t c = 0; c < 8; ++c)
+    for (int32_t l = 0; l < MPMI_LANES; ++l) out[8 * l + c] = in[c][l];
+#else
+  mpmi_interleave8(in, 0, out);
+#endif
+}
+
 /* Turns four component arrays of n particles into one vector per particle, `stride` doubles apart. */
 MPMI_INLINE void mpmi_pack(int64_t n, const double *a, const double *b, const double *c, const double *d,
                            double *out, int32_t stride) {

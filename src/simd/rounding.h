@@ -1,4 +1,5 @@
-/* Rounding to integers without instructions of its own, so that every instruction set can vectorise it. */
+/* Rounding to integers, for |x| < 2^51 without instructions of its own, so that every instruction set can
+ * vectorise it. */
 #ifndef MPMI_ROUNDING_H
 #define MPMI_ROUNDING_H
 
@@ -26,8 +27,14 @@ MPMI_INLINE double mpmi_floor(double x) {
   return r > x ? r - 1.0 : r;
 }
 MPMI_INLINE mpmi_lanes mpmi_lanes_floor(mpmi_lanes v) {
+#if defined(__AVX512F__) && MPMI_WIDTH == 8
+  return _mm512_floor_pd(v);
+#elif defined(__AVX2__) && MPMI_WIDTH == 4
+  return _mm256_floor_pd(v);
+#else
   const mpmi_lanes r = mpmi_lanes_round(v);
   return mpmi_lanes_select(r > v, r - 1.0, r);
+#endif
 }
 
 #endif

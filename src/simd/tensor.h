@@ -52,6 +52,17 @@ MPMI_INLINE mpmi_mat mpmi_load_F_minus_1(int dim, const double *F, int64_t ld, i
   return h;
 }
 
+/* The same in 2-D from the rows that a set stores: xx xy yx yy zz. */
+MPMI_INLINE mpmi_mat mpmi_load_stored_F_minus_1(const double *F, int64_t ld, int64_t i) {
+  mpmi_mat h = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  h.xx = F[i] - 1.0;
+  h.xy = F[ld + i];
+  h.yx = F[2 * ld + i];
+  h.yy = F[3 * ld + i] - 1.0;
+  h.zz = F[4 * ld + i] - 1.0;
+  return h;
+}
+
 MPMI_INLINE mpmi_sym mpmi_load_sym(int dim, const double *a, int64_t ld, int64_t i) {
   mpmi_sym s = {a[i], a[ld + i], a[2 * ld + i], 0.0, 0.0, 0.0};
   if (dim >= 2) s.xy = a[3 * ld + i];

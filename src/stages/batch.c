@@ -181,6 +181,7 @@ void mpmi_pass_begin(mpmi_batch *b, mpmi_step *step, mpmi_nodes *nodes, const mp
   b->report = &step->work->report[task];
   b->m = -1;
   b->batches = 0;
+  b->largest_rate = 0.0;
   choose_form(b);
 }
 

@@ -40,14 +40,14 @@ struct mpmi_batch {
   mpmi_move move;
   mpmi_deform deform;
   mpmi_sums_job sums_job;
-  int32_t in_place; /* the law reads and writes the set's arrays, which are laid out as its batch would be */
-  int32_t rings;    /* the gradient has a hoop part, which is not gathered */
+  int32_t rings;          /* the gradient has a hoop part, which is not gathered */
   double *v_bar, *dv, *C; /* rows of what is gathered, beside the gradient, which goes to the law */
   int32_t keeps;          /* the set keeps the gradient: MPMI_KEEPS_... */
   /* The block at hand: */
   int64_t block;
   mpmi_sums *sums;
-  mpmi_spans next; /* of the block that comes next */
+  mpmi_spans next;     /* of the block that comes next */
+  double largest_rate; /* of the blocks so far */
   /* The batch at hand: */
   int64_t begin, n;
   mpmi_taken taken; /* what moving and deforming returned where the gather has done that */

@@ -24,11 +24,18 @@ static int32_t needs_F_alone(const mpmi_settings *settings, const mpm_particles 
   return looks_at_F_alone(set->material) && !mpmi_dissipates(settings, m) && !mpmi_expands(set);
 }
 
-/* In 3-D the stored components of F and stress are those of a batch. Laws that look at F alone then need no
- * copy of them. */
+/* Laws that look at F alone, and take its rows as a set stores them, need no copy of F and stress. */
 static int32_t works_in_place(const mpmi_settings *settings, const mpm_particles *set, int32_t m) {
-  return set->grid->dim == 3 && needs_F_alone(settings, set, m) && !settings->desc.locking_remedy &&
-         !mpmi_is_implicit(settings);
+  return needs_F_alone(settings, set, m) && mpmi_material_takes_stored(set->material, set->grid->dim) &&
+         !mpmi_is_axisymmetric(set->grid) && !mpmi_is_plane_stress(set->grid) &&
+         !settings->desc.locking_remedy && !mpmi_is_implicit(settings);
+}
+
+/* Sums need the roots of few wave speeds. Reference speeds, sheets and stiffness of springs need those of
+ * all. */
+static int32_t takes_squares(const mpmi_settings *settings) {
+  return !mpmi_is_implicit(settings) && !mpmi_is_total_lagrangian(settings->grid) &&
+         !mpmi_is_plane_stress(settings->grid);
 }
 
 /* A total Lagrangian grid makes the gradient over reference positions that over the present ones once it is
@@ -72,19 +79,21 @@ static void bind_gradient(mpmi_batch *b) {
 void mpmi_strain_bind(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const mpm_grid *grid = settings->grid;
-  b->in_place = works_in_place(settings, b->set, b->m);
-  if (b->in_place) b->law.batch.ld = b->set->ld;
+  b->law.stored = works_in_place(settings, b->set, b->m);
+  if (b->law.stored) b->law.batch.ld = b->set->ld;
+  b->law.squares = takes_squares(settings);
   b->deform =
       (mpmi_deform){.dt = b->step->dt,
                     .total = mpmi_is_total_lagrangian(grid) && deforms_at_once(b),
                     .ld = b->law.ld,
                     .L = b->law.L,
-                    .F = b->in_place ? NULL : b->law.F,
+                    .F = b->law.stored ? NULL : b->law.F,
                     .F_inc = b->set->material->law && !mpmi_is_implicit(settings) ? NULL : b->law.F_inc};
   b->sums_job =
       (mpmi_sums_job){.ld = b->law.batch.ld,
                       .wave_speed = b->law.wave_speed,
-                      .kinematic_viscosity = b->law.viscosity,
+                      .kinematic_viscosity = mpmi_may_be_viscous(b->set->material) ? b->law.viscosity : NULL,
+                      .squared = b->law.squares && b->set->material->law,
                       .energy = b->law.energy,
                       .viscous_factor = 2.0 * grid->dim / (grid->h_min * grid->h_min),
                       .carried = mpmi_is_total_lagrangian(grid) ? 0.0 : 1.0,
@@ -96,6 +105,7 @@ void mpmi_strain_bind(mpmi_batch *b) {
     b->sums_job.period[k] = periodic ? length : 0.0;
     b->sums_job.inverse_period[k] = periodic ? 1.0 / length : 0.0;
     b->sums_job.gravity[k] = settings->desc.gravity[k];
+    b->sums_job.spacing[k] = grid->desc.spacing[k];
     b->sums_job.inverse_spacing[k] = grid->inverse_spacing[k];
   }
   if (deforms_at_once(b) && !finds_only_C(b)) b->gather.deform = &b->deform;
@@ -132,7 +142,7 @@ void mpmi_strain_aim(mpmi_batch *b) {
   }
   b->deform.initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + b->begin;
   b->deform.volume = mpmi_f64(set, MPMI_VOLUME, 0) + b->begin;
-  if (b->in_place) {
+  if (b->law.stored) {
     b->law.batch.F = b->deform.F_new[0];
     b->law.batch.stress_new = mpmi_component_row(set, MPMI_STRESS, 1, 0) + b->begin;
     b->sums_job.checked[0] = b->law.batch.stress_new;
@@ -206,7 +216,7 @@ void mpmi_strain_law(mpmi_batch *b) {
   if (mpmi_dissipates(step->settings, b->m)) mpmi_dissipation_find(b);
   if (mpmi_is_plane_stress(b->set->grid)) take_thickness(b);
   if (mpmi_is_total_lagrangian(b->set->grid)) take_reference_speeds(b);
-  if (!b->in_place) mpmi_law_batch_store(&b->law, b->set, 1, b->begin, b->n);
+  if (!b->law.stored) mpmi_law_batch_store(&b->law, b->set, 1, b->begin, b->n);
   b->law_ran = 1;
 }
 
@@ -242,7 +252,9 @@ void mpmi_batch_sums(mpmi_batch *b, int32_t what) {
       job->affine[mpmi_gradient_map(dim)[c]] = mpmi_component_row(set, MPMI_L, 1, c) + b->begin;
   }
   if (mpmi_is_total_lagrangian(set->grid)) mpmi_point_at(set, MPMI_F, 1, b->begin, job->F);
+  if (b->sums->rate < b->largest_rate) b->sums->rate = b->largest_rate; /* lesser ones are not looked at */
   b->flags |= settings->kernels->sums[dim](job, b->n, b->sums);
+  b->largest_rate = b->sums->rate;
 }
 
 void mpmi_make_volumes(const mpmi_layout *layout, int32_t copy) {

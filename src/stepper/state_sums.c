@@ -35,6 +35,7 @@ static void bind_particles(const mpm_stepper *s, const mpm_particles *set, const
   for (int32_t k = 0; k < grid->dim; ++k) {
     job->x[k] = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld + begin;
     job->v[k] = mpmi_f64(set, MPMI_VELOCITY, 0) + k * set->ld + begin;
+    job->spacing[k] = grid->desc.spacing[k];
     job->inverse_spacing[k] = grid->inverse_spacing[k];
   }
   if (mpmi_is_total_lagrangian(grid)) mpmi_point_at(set, MPMI_F, 0, begin, job->F);

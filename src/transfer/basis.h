@@ -77,7 +77,7 @@ MPMI_INLINE double mpmi_cell(const mpmi_axis *a, double xi) {
 }
 MPMI_INLINE mpmi_lanes mpmi_lanes_cell(const mpmi_axis *a, mpmi_lanes xi) {
   const mpmi_lanes zero = {0.0}, cell = mpmi_lanes_floor(xi), last = zero + a->last_cell;
-  return mpmi_lanes_select(cell > last, last, cell);
+  return mpmi_lanes_min(cell, last);
 }
 
 /* Finds the place of each stencil in the tile. */

@@ -1,11 +1,14 @@
 /* Energies, momenta and the stable rate of a batch, and a look at what the law returned. */
 #include "material/deformation.h"
 #include "simd/chunk.h"
+#include "simd/pack.h"
 #include "simd/rounding.h"
 #include "transfer/sums.h"
 
+/* What has been added up; and the largest rate so far, with what is surely below rate h_k. */
 typedef struct mpmi_tally {
-  mpmi_lanes kinetic, affine, strain, work, rate, viscosity, bad, momentum[3], angular[3];
+  mpmi_lanes kinetic, affine, strain, work, viscosity, bad, momentum[3], angular[3], below[3];
+  double rate;
 } mpmi_tally;
 
 /* Returns the second moment D of the basis at a particle, for the affine part of energy and angular
@@ -68,20 +71,49 @@ MPMI_INLINE void add_work(const mpmi_sums_job *job, int64_t s, int32_t k, mpmi_l
   t->work += force * path;
 }
 
+MPMI_INLINE void set_rate(int32_t dim, const mpmi_sums_job *job, double rate, mpmi_tally *t) {
+  const double margin = 1.0 - 1e-14; /* what rounding adds to a rate is less by an order */
+  const mpmi_lanes zero = {0.0};
+  t->rate = rate;
+  for (int32_t k = 0; k < dim; ++k) t->below[k] = zero + margin * rate * job->spacing[k];
+}
+
+/* Takes the largest (|v_k| + c) / h_k. Few c are the largest so far: others are known from their squares to
+ * be less than rate h_k - |v_k| for each axis, and their roots are not taken. */
+MPMI_INLINE void add_rate(int32_t dim, const mpmi_sums_job *job, mpmi_lanes c, const mpmi_lanes *v,
+                          mpmi_tally *t) {
+  const mpmi_lanes zero = {0.0};
+  if (job->squared) {
+    mpmi_lanes room = t->below[0] - job->carried * mpmi_lanes_abs(v[0]);
+    for (int32_t k = 1; k < dim; ++k)
+      room = mpmi_lanes_min(room, t->below[k] - job->carried * mpmi_lanes_abs(v[k]));
+    room = mpmi_lanes_max(zero, room);
+    if (!mpmi_lanes_any(~((c >= zero) & (c < room * room)), 1)) return;
+    c = mpmi_lanes_sqrt(c);
+    t->bad += c * 0.0;
+  }
+  mpmi_lanes rate = zero;
+  for (int32_t k = 0; k < dim; ++k)
+    rate = mpmi_lanes_max(rate, (job->carried * mpmi_lanes_abs(v[k]) + c) * job->inverse_spacing[k]);
+  const double largest = mpmi_lanes_largest(rate);
+  if (largest > t->rate) set_rate(dim, job, largest, t);
+}
+
 MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpmi_tally *t) {
   const mpmi_lanes m = mpmi_lanes_load(job->mass + s), v0 = mpmi_lanes_load(job->initial_volume + s);
   const mpmi_mask live = v0 > 0.0; /* holes have no volume, and what the law says of them is of no interest */
   const mpmi_lanes c = mpmi_lanes_where(live, mpmi_lanes_load(job->wave_speed + s));
   if (job->what & MPMI_SUMS_LAW) {
-    const mpmi_lanes nu = mpmi_lanes_where(live, mpmi_lanes_load(job->kinematic_viscosity + s));
     t->strain += v0 * mpmi_lanes_where(live, mpmi_lanes_load(job->energy + s));
-    t->viscosity = mpmi_lanes_max(t->viscosity, nu);
-    t->bad += (c - c) + (nu - nu);
+    t->bad += c * 0.0; /* not 0 where a value is not finite */
+    if (job->kinematic_viscosity) {
+      const mpmi_lanes nu = mpmi_lanes_where(live, mpmi_lanes_load(job->kinematic_viscosity + s));
+      t->viscosity = mpmi_lanes_max(t->viscosity, nu);
+      t->bad += nu * 0.0;
+    }
     for (int32_t a = 0; a < 2; ++a)
-      for (int32_t r = 0; r < job->checked_rows[a]; ++r) {
-        const mpmi_lanes value = mpmi_lanes_load(job->checked[a] + r * job->ld + s);
-        t->bad += value - value;
-      }
+      for (int32_t r = 0; r < job->checked_rows[a]; ++r)
+        t->bad += mpmi_lanes_load(job->checked[a] + r * job->ld + s) * 0.0;
   }
   if (!(job->what & MPMI_SUMS_MOTION)) return;
   mpmi_lanes x[3], v[3];
@@ -91,33 +123,54 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpm
     const mpmi_lanes p = m * v[k];
     t->momentum[k] += p;
     t->kinetic += p * v[k];
-    t->rate = mpmi_lanes_max(t->rate, (job->carried * mpmi_lanes_abs(v[k]) + c) * job->inverse_spacing[k]);
     add_work(job, s, k, m, x[k], t);
   }
+  add_rate(dim, job, c, v, t);
   for (int32_t r = 0; r < 3; ++r) add_angular(dim, job, s, r, m, x, v, t);
   for (int32_t r = 0; r < 3 && job->F[0]; ++r) add_reference_angular(dim, job, s, r, m, t);
   add_affine(dim, job, s, m, t);
 }
 
+/* Sums each of eight registers over its lanes, the first lane first. */
+MPMI_INLINE void sum_lanes(const mpmi_lanes *of, double *sum) {
+  const double *row[8];
+  _Alignas(64) double lane[8 * MPMI_CHUNK];
+  for (int32_t i = 0; i < 8; ++i) row[i] = (const double *)&of[i];
+  mpmi_lanes_turn(row, lane);
+  for (int32_t i = 0; i < 8; i += MPMI_LANES) {
+    mpmi_lanes total = mpmi_lanes_load(lane + i);
+    for (int32_t l = 1; l < MPMI_LANES; ++l) total += mpmi_lanes_load(lane + 8 * l + i);
+    mpmi_lanes_store(sum + i, total);
+  }
+}
+
 MPMI_INLINE uint32_t sum_batch(int32_t dim, const mpmi_sums_job *job, int64_t n, mpmi_sums *sums) {
   const mpmi_lanes zero = {0.0};
   mpmi_tally t;
-  t.kinetic = t.affine = t.strain = t.work = t.rate = t.viscosity = t.bad = zero;
+  t.kinetic = t.affine = t.strain = t.work = t.viscosity = t.bad = zero;
   for (int32_t k = 0; k < 3; ++k) t.momentum[k] = t.angular[k] = zero;
+  set_rate(dim, job, sums->rate, &t);
   for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) add_group(dim, job, s, &t);
-  sums->kinetic += 0.5 * mpmi_lanes_sum(t.kinetic);
-  sums->affine += 0.5 * mpmi_lanes_sum(t.affine);
-  sums->strain += mpmi_lanes_sum(t.strain);
-  sums->work += mpmi_lanes_sum(t.work);
-  for (int32_t k = 0; k < 3; ++k) {
-    sums->momentum[k] += mpmi_lanes_sum(t.momentum[k]);
-    sums->angular[k] += mpmi_lanes_sum(t.angular[k]);
-  }
-  const double rate = mpmi_lanes_largest(t.rate);
+  double of_all[8], of_three[8] = {0.0};
+  const mpmi_lanes first[8] = {t.kinetic, t.affine,      t.strain,      t.work,
+                               t.bad,     t.momentum[0], t.momentum[1], t.angular[2]};
+  const mpmi_lanes rest[8] = {t.momentum[2], t.angular[0], t.angular[1], zero, zero, zero, zero, zero};
+  sum_lanes(first, of_all);
+  if (dim == 3) sum_lanes(rest, of_three);
+  sums->kinetic += 0.5 * of_all[0];
+  sums->affine += 0.5 * of_all[1];
+  sums->strain += of_all[2];
+  sums->work += of_all[3];
+  sums->momentum[0] += of_all[5];
+  sums->momentum[1] += of_all[6];
+  sums->momentum[2] += of_three[0];
+  sums->angular[0] += of_three[1];
+  sums->angular[1] += of_three[2];
+  sums->angular[2] += of_all[7];
   const double viscous_rate = mpmi_lanes_largest(t.viscosity) * job->viscous_factor;
-  if (rate > sums->rate) sums->rate = rate;
+  sums->rate = t.rate;
   if (viscous_rate > sums->viscous_rate) sums->viscous_rate = viscous_rate;
-  return mpmi_lanes_sum(t.bad) == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE;
+  return of_all[4] == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE;
 }
 
 #define SUMS(dim)                                                                                            \

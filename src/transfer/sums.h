@@ -16,12 +16,14 @@ typedef struct mpmi_sums_job {
   int32_t what;
   int64_t ld; /* of wave_speed ... */
   const double *x[3], *v[3], *mass, *initial_volume;
-  const double *wave_speed, *kinematic_viscosity, *energy; /* [ld] of the batch */
-  const double *affine[9]; /* C of APIC for its energy and angular momentum, or NULL */
-  const double *force[3];  /* external force beside gravity, or NULL */
-  const double *x_old[3];  /* for the work over the step; NULL: there is none */
+  const double *wave_speed, *energy; /* [ld] of the batch */
+  const double *kinematic_viscosity; /* the same, or NULL: there is none */
+  int32_t squared;                   /* 1: wave_speed has the squares of the speeds */
+  const double *affine[9];           /* C of APIC for its energy and angular momentum, or NULL */
+  const double *force[3];            /* external force beside gravity, or NULL */
+  const double *x_old[3];            /* for the work over the step; NULL: there is none */
   double gravity[3], period[3], inverse_period[3];
-  double inverse_spacing[3], viscous_factor; /* 2 dim / h_min^2 */
+  double spacing[3], inverse_spacing[3], viscous_factor; /* 2 dim / h_min^2 */
   const double *moment[3];   /* sum w (x_i - x)^2 of each particle along each axis, or NULL: */
   double constant_moment[3]; /* where it is the same for all particles */
   double carried;            /* share of the velocity in the stable rate: 1, or 0 where F is */

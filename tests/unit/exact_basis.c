@@ -2,9 +2,6 @@
  * faces, half nodes and anywhere. */
 #include "exact.h"
 
-#include <string.h>
-
-#include "context/context.h"
 #include "transfer/kernels.h"
 
 static const double origin = -0.3, spacing = 0.25;
@@ -168,55 +165,10 @@ START_TEST(periodic_images_reach_the_tile) {
 }
 END_TEST
 
-/* The scatter of a node in one register and that in two halves, with the same particles. */
-START_TEST(halves_give_the_same_bits) {
-  enum { N = 3 * MPMI_CHUNK, MOST = 16 * 16 * 16, ROWS = 3 + 3 + 2 + 6 };
-  static double row[ROWS][N], tile[2][8 * MOST];
-  if (!has_isa(MPM_ISA_AVX512)) return;
-  const mpmi_kernels *kernels = mpmi_kernels_of(MPM_ISA_AVX512);
-  const int32_t dim = 1 + _i % 3, width = 2 + _i / 3;
-  dice d = {4 + (uint64_t)_i};
-  mpmi_scatter job = {.weights = kernels->weights[width - 2][dim], .need = MPMI_NEED_GRADIENT};
-  for (int32_t r = 0; r < ROWS; ++r)
-    for (int32_t p = 0; p < N; ++p) row[r][p] = throw_between(&d, r < 6 ? -1.0 : 0.5, 1.0);
-  for (int32_t k = 0; k < dim; ++k) {
-    job.axis[k] = axis_of(0.0, 0);
-    for (int32_t p = 0; p < N; ++p) row[k][p] = origin + spacing * throw_between(&d, 1.5, 4.5);
-    job.points.x[k] = row[k], job.v[k] = row[3 + k], job.gravity[k] = -9.81;
-  }
-  job.mass = row[6], job.volume = row[7], job.streams.end = N;
-  for (int32_t c = 0; c < 6; ++c) job.stress[c] = row[8 + c];
-  memset(tile, 0, sizeof tile);
-  for (int32_t halves = 0; halves < 2; ++halves) {
-    job.tile = tile[halves];
-    kernels->scatter[dim][width][halves ? MPMI_SCATTER_8_HALVES : MPMI_SCATTER_8](&job, 0, N);
-  }
-  ck_assert(memcmp(tile[0], tile[1], sizeof tile[0]) == 0);
-  double force = 0.0;
-  for (int32_t i = 4; i < 8 * MOST; i += 8) force += fabs(tile[0][i]);
-  ck_assert(force > 1.0);
-}
-END_TEST
-
-/* Processors are asked once; other instruction sets have no such registers. */
-START_TEST(only_wide_registers_are_halved) {
-  if (!has_isa(MPM_ISA_BASELINE + _i)) return;
-  mpm_context_desc desc;
-  mpm_context *context;
-  ck_assert(mpm_context_desc_init(&desc, sizeof desc) == MPM_OK);
-  desc.isa = MPM_ISA_BASELINE + _i;
-  ck_assert(mpm_context_create(&desc, &context) == MPM_OK);
-  ck_assert(desc.isa == MPM_ISA_AVX512 || !context->works_by_halves);
-  ck_assert(mpm_context_destroy(context) == MPM_OK);
-}
-END_TEST
-
 TCase *basis_case(void) {
   TCase *tc = tcase_create("basis");
   tcase_add_loop_test(tc, weights_are_exact, 0, 4);
   tcase_add_loop_test(tc, moments_are_exact, 0, 4);
   tcase_add_loop_test(tc, periodic_images_reach_the_tile, 0, 4);
-  tcase_add_loop_test(tc, halves_give_the_same_bits, 0, 9);
-  tcase_add_loop_test(tc, only_wide_registers_are_halved, 0, 4);
   return tc;
 }

@@ -1,0 +1,114 @@
+/* Kernels that take another way to the same bits: nodes as two halves, wave speeds as squares. */
+#include "exact.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "context/context.h"
+#include "transfer/kernels.h"
+
+static const double spacing = 0.25;
+enum { N = 3 * MPMI_CHUNK, MOST = 16 * 16 * 16, ROWS = 3 + 3 + 2 + 6 };
+
+static mpmi_axis axis_of_block(void) {
+  return (mpmi_axis){.spacing = spacing, .inverse_spacing = 1.0 / spacing, .last_cell = 9.0, .middle = 8.5};
+}
+
+/* Particles at random places of some cells, with random velocities, masses, volumes and stresses. */
+static mpmi_scatter scatter_of(const mpmi_kernels *kernels, int32_t dim, int32_t width, uint64_t seed,
+                               double (*row)[N]) {
+  dice d = {seed};
+  mpmi_scatter job = {.weights = kernels->weights[width - 2][dim], .need = MPMI_NEED_GRADIENT};
+  for (int32_t r = 0; r < ROWS; ++r)
+    for (int32_t p = 0; p < N; ++p) row[r][p] = throw_between(&d, r < 6 ? -1.0 : 0.5, 1.0);
+  for (int32_t k = 0; k < dim; ++k) {
+    job.axis[k] = axis_of_block();
+    for (int32_t p = 0; p < N; ++p) row[k][p] = spacing * throw_between(&d, 1.5, 4.5);
+    job.points.x[k] = row[k], job.v[k] = row[3 + k], job.gravity[k] = -9.81;
+  }
+  job.mass = row[6], job.volume = row[7], job.streams.end = N;
+  for (int32_t c = 0; c < 6; ++c) job.stress[c] = row[8 + c];
+  return job;
+}
+
+/* The scatter of a node in one register and that in two halves, with the same particles. */
+START_TEST(halves_give_the_same_bits) {
+  static double row[ROWS][N], tile[2][8 * MOST];
+  if (!has_isa(MPM_ISA_AVX512)) return;
+  const mpmi_kernels *kernels = mpmi_kernels_of(MPM_ISA_AVX512);
+  const int32_t width = 2 + _i;
+  mpmi_scatter job = scatter_of(kernels, 3, width, 4 + (uint64_t)_i, row);
+  memset(tile, 0, sizeof tile);
+  for (int32_t halves = 0; halves < 2; ++halves) {
+    job.tile = tile[halves];
+    kernels->scatter[3][width][halves ? MPMI_SCATTER_8_HALVES : MPMI_SCATTER_8](&job, 0, N);
+  }
+  ck_assert(memcmp(tile[0], tile[1], sizeof tile[0]) == 0);
+  double force = 0.0;
+  for (int32_t i = 4; i < 8 * MOST; i += 8) force += fabs(tile[0][i]);
+  ck_assert(force > 1.0);
+}
+END_TEST
+
+/* Whatever the squares of wave speeds let be passed over: the largest rate is the same in every bit, also
+ * where it is far above all others, comes last, or is that of a particle at rest. */
+START_TEST(squares_lead_to_the_same_rate) {
+  static double x[3][N], v[3][N], mass[N], volume[N], speed[N], square[N], energy[N];
+  const int32_t isa = MPM_ISA_BASELINE + _i % 4, dim = 1 + _i / 4;
+  if (!has_isa(isa)) return;
+  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  dice d = {40 + (uint64_t)_i};
+  mpmi_sums_job job = {.what = MPMI_SUMS_LAW | MPMI_SUMS_MOTION,
+                       .ld = N,
+                       .mass = mass,
+                       .initial_volume = volume,
+                       .energy = energy,
+                       .carried = 1.0};
+  for (int32_t k = 0; k < dim; ++k) {
+    job.x[k] = x[k], job.v[k] = v[k];
+    job.spacing[k] = spacing * (k + 1.0), job.inverse_spacing[k] = 1.0 / job.spacing[k];
+  }
+  for (int32_t round = 0; round < 200; ++round) {
+    mpmi_sums sums[2] = {{.rate = 0.0}, {.rate = 0.0}};
+    const double spread = pow(10.0, throw_between(&d, -16.0, 2.0));
+    for (int32_t p = 0; p < N; ++p) {
+      for (int32_t k = 0; k < dim; ++k) v[k][p] = round % 3 ? throw_between(&d, -1.0, 1.0) : 0.0;
+      mass[p] = volume[p] = p % 7 ? 1.0 : 0.0; /* holes have neither */
+      square[p] = 1.0 + spread * throw_between(&d, 0.0, 1.0) + (round % 2 ? spread * p : 0.0);
+      square[p] *= round % 4 ? 1.0 : 1e-8; /* slower than most particles move */
+      if (round % 5 == 4 && p == 1 + round % (N - 1)) square[p] *= 1.0 + 4e-16;
+      speed[p] = sqrt(square[p]);
+    }
+    for (job.squared = 0; job.squared < 2; ++job.squared) {
+      job.wave_speed = job.squared ? square : speed;
+      for (int64_t s = 0; s < 2; ++s) ck_assert(!kernels->sums[dim](&job, N, &sums[job.squared]));
+    }
+    ck_assert(sums[0].rate > 0.0 && sums[0].rate == sums[1].rate);
+  }
+  square[N - 2] = -1.0, volume[N - 2] = 1.0; /* no speed has this square */
+  mpmi_sums sums = {.rate = 1e300};
+  job.squared = 1, job.wave_speed = square;
+  ck_assert(kernels->sums[dim](&job, N, &sums) & MPMI_NONFINITE);
+}
+END_TEST
+
+/* Processors are asked once; other instruction sets have no such registers. */
+START_TEST(only_wide_registers_are_halved) {
+  if (!has_isa(MPM_ISA_BASELINE + _i)) return;
+  mpm_context_desc desc;
+  mpm_context *context;
+  ck_assert(mpm_context_desc_init(&desc, sizeof desc) == MPM_OK);
+  desc.isa = MPM_ISA_BASELINE + _i;
+  ck_assert(mpm_context_create(&desc, &context) == MPM_OK);
+  ck_assert(desc.isa == MPM_ISA_AVX512 || !context->works_by_halves);
+  ck_assert(mpm_context_destroy(context) == MPM_OK);
+}
+END_TEST
+
+TCase *kernels_case(void) {
+  TCase *tc = tcase_create("kernels");
+  tcase_add_loop_test(tc, halves_give_the_same_bits, 0, 3);
+  tcase_add_loop_test(tc, squares_lead_to_the_same_rate, 0, 12);
+  tcase_add_loop_test(tc, only_wide_registers_are_halved, 0, 4);
+  return tc;
+}
