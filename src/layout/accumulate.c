@@ -27,8 +27,9 @@ static void clear_task(void *data, int64_t k) {
   const mpmi_settings *settings = job->step->settings;
   const mpmi_blocks *b = &job->step->layout->blocks;
   const int64_t each = (int64_t)b->nodes * sum->to->values;
-  if (!sum->gathers) mpmi_tile_use(settings->grid, tile_of(job, k), sum->to->values);
-  memset(tile_of(job, k), 0, (size_t)(sum->to->values * mpmi_tile_nodes(settings->grid)) * sizeof(double));
+  const int32_t values = sum->flat ? MPMI_FLAT_VALUES : sum->to->values;
+  if (!sum->gathers) mpmi_tile_use(settings->grid, tile_of(job, k), values);
+  memset(tile_of(job, k), 0, (size_t)(values * mpmi_tile_nodes(settings->grid)) * sizeof(double));
   const mpmi_share share = mpmi_share_of(settings, b->count, k);
   if (!sum->flags && mpmi_zero_elsewhere(job->step->layout, sum->to)) {
     mpmi_reached_runs(b, share.begin, share.end, clear_run, sum->to);
@@ -49,7 +50,8 @@ static void add_block(void *user, const mpmi_visit *visit) {
   if (sum->flags && !(sum->flags[visit->block] & sum->giving)) return;
   double *tile = tile_of(job, visit->task);
   sum->give(sum->user, visit, tile);
-  mpmi_tile_add(job->step->settings->kernels, &job->step->layout->blocks, visit->block, sum->to, tile);
+  mpmi_tile_add(job->step->settings->kernels, &job->step->layout->blocks, visit->block, sum->to, sum->flat,
+                tile);
 }
 
 /* Tied nodes get values where no stencil is, and so may hosts and implicit steps give them. */
@@ -64,7 +66,9 @@ static void give_boundary(void *user, const mpmi_visit *visit) {
   const sum_job *job = user;
   const mpmi_accumulation *sum = job->sum;
   if (sum->flags && !(sum->flags[visit->block] & sum->giving)) return;
-  sum->give(sum->user, visit, mpmi_tiles_of(job->step->layout->parts, visit->block, sum->to->values));
+  double *tile = mpmi_tiles_of(job->step->layout->parts, visit->block, sum->to->values);
+  sum->give(sum->user, visit, sum->flat ? tile_of(job, visit->task) : tile);
+  if (sum->flat) mpmi_tile_raise(job->step->settings->grid, tile_of(job, visit->task), tile);
 }
 
 static int32_t has_colour(const mpmi_blocks *b, int64_t block, int32_t colour) {
@@ -86,7 +90,7 @@ static void add_shared_task(void *data, int64_t k) {
     double *tile = ghost ? tile_of(job, k) : mpmi_tiles_of(parts, block, job->sum->to->values);
     if (!has_colour(b, block, job->colour)) continue;
     if (ghost && !mpmi_tiles_unpack(parts, ghost, job->sum->to->values, tile, &b->cover[block])) continue;
-    mpmi_tile_add(kernels, b, block, job->sum->to, tile);
+    mpmi_tile_add(kernels, b, block, job->sum->to, 0, tile);
   }
 }
 

@@ -11,10 +11,12 @@
 
 typedef struct mpmi_accumulation {
   mpmi_nodal *to;
-  /* Adds what the particles of a block give to a clean tile, with as many values per node as `to` has. */
+  /* Adds what the particles of a block give to a clean tile, with as many values per node as `to` has, or
+   * flat (transfer/scatter.h). */
   void (*give)(void *user, const mpmi_visit *visit, double *tile);
   mpm_task_fn fold; /* run by all tasks once the sums are there, or NULL */
   void *user;       /* of give and fold */
+  int32_t flat;     /* 1: give makes flat tiles */
   int32_t calls_host;
   int32_t gathers; /* 1: give gathers into `tile` meanwhile, so the sums are made in `sum_tile` */
   /* Flags of blocks, or NULL: those with `giving` give, those with `receiving` have nodes to be cleared. */

@@ -1,6 +1,8 @@
 /* Tiles and the blocks around them: loads, adds and fetches box by box, by the kernels of transfer/box.c. */
 #include "layout/tile.h"
 
+#include <string.h>
+
 int32_t mpmi_tile_nodes(const mpm_grid *grid) {
   int32_t count = 1;
   for (int32_t k = 0; k < grid->dim; ++k) count *= MPMI_TILE_EDGE(grid->dim, grid->width);
@@ -49,12 +51,28 @@ void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t b
 }
 
 void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
-                   double *tile) {
+                   int32_t flat, double *tile) {
   const mpmi_spans spans = mpmi_spans_of(b, block);
   mpmi_box box;
-  for (int32_t n = 0; n < b->neighbours; ++n)
-    if (find_box(b, &spans, block, n, nodes, tile, nodes->values, &box))
+  for (int32_t n = 0; n < b->neighbours; ++n) {
+    if (!find_box(b, &spans, block, n, nodes, tile, flat ? 4 : nodes->values, &box)) continue;
+    box.masses = mpmi_flat_masses(b->grid->dim, b->grid->width, tile) + (box.tile - tile) / 4;
+    if (flat)
+      kernels->add_flat_box(&box);
+    else
       kernels->add_box(nodes->values, &box);
+  }
+}
+
+void mpmi_tile_raise(const mpm_grid *grid, double *flat, double *tile) {
+  const int32_t count = mpmi_tile_nodes(grid);
+  double *masses = mpmi_flat_masses(grid->dim, grid->width, flat);
+  for (int32_t i = 0; i < count; ++i) {
+    const double *from = flat + 4 * i;
+    memcpy(tile + 8 * i, (double[8]){from[0], from[1], 0.0, masses[i], from[2], from[3], 0.0, 0.0},
+           8 * sizeof(double));
+  }
+  memset(flat, 0, (size_t)(MPMI_FLAT_VALUES * count) * sizeof(double));
 }
 
 /* Stands for a knot that is out of reach. */

@@ -22,9 +22,11 @@ void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t b
  * them. */
 void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block,
                      const mpmi_spans *spans, const mpmi_nodal *nodes, int32_t begin, int32_t end);
-/* Adds the tile, which has as many values per node, to the nodes and leaves it clean. */
+/* Adds the tile, which has as many values per node or is flat, to the nodes and leaves it clean. */
 void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
-                   double *tile);
+                   int32_t flat, double *tile);
+/* Turns a flat tile into one of eight values per node, and leaves it clean. */
+void mpmi_tile_raise(const mpm_grid *grid, double *flat, double *tile);
 
 /* Describes the axes of the basis as seen from the block at `coord`. */
 void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis);

@@ -46,9 +46,19 @@ MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d)
   *d = MPMI_SHUFFLE(ab_odd, cd_odd, 2, 3, 6, 7);
 }
 
-/* The first two values of each. */
+/* The first two values of each, and the last two. */
 MPMI_INLINE mpmi_v4 mpmi_pair4(mpmi_v4 a, mpmi_v4 b) {
   return MPMI_SHUFFLE(a, b, 0, 1, 4, 5);
+}
+MPMI_INLINE mpmi_v4 mpmi_last_pair4(mpmi_v4 a, mpmi_v4 b) {
+  return MPMI_SHUFFLE(a, b, 2, 3, 6, 7);
+}
+MPMI_INLINE mpmi_v4 mpmi_set4(double a, double b, double c, double d) {
+  return (mpmi_v4){a, b, c, d};
+}
+/* a + s v with one factor for the first two values and another for the last two. */
+MPMI_INLINE mpmi_v4 mpmi_fma_pair4(mpmi_v4 a, double first, double last, mpmi_v4 v) {
+  return a + (mpmi_v4){first, first, last, last} * v;
 }
 
 #else
@@ -96,6 +106,15 @@ MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d)
 }
 MPMI_INLINE mpmi_v4 mpmi_pair4(mpmi_v4 a, mpmi_v4 b) {
   return (mpmi_v4){a.low, b.low};
+}
+MPMI_INLINE mpmi_v4 mpmi_last_pair4(mpmi_v4 a, mpmi_v4 b) {
+  return (mpmi_v4){a.high, b.high};
+}
+MPMI_INLINE mpmi_v4 mpmi_set4(double a, double b, double c, double d) {
+  return (mpmi_v4){{a, b}, {c, d}};
+}
+MPMI_INLINE mpmi_v4 mpmi_fma_pair4(mpmi_v4 a, double first, double last, mpmi_v4 v) {
+  return (mpmi_v4){a.low + first * v.low, a.high + last * v.high};
 }
 #endif
 

@@ -109,6 +109,7 @@ static void choose_form(p2g_job *job) {
   if (mpmi_has_increments(job->to)) {
     const int32_t plain = settings->context->works_by_halves ? MPMI_SCATTER_8_HALVES : MPMI_SCATTER_8;
     job->form = job->affine ? MPMI_SCATTER_8_AFFINE : plain;
+    if (settings->grid->dim < 3) job->form = job->affine ? MPMI_SCATTER_FLAT_AFFINE : MPMI_SCATTER_FLAT;
     job->need =
         moments == MPMI_NEED_MLS ? moments : MPMI_NEED_GRADIENT | (job->affine ? moments : MPMI_NO_FIRST);
   } else if (job->affine && settings->grid->family >= MPMI_FAMILY_OPEN_BSPLINE2) {
@@ -132,7 +133,9 @@ mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mp
                           ? mpmi_cell_pressure_stage(step, nodes, job.stress_copy)
                           : MPM_OK;
   if (status) return status;
-  status = mpmi_accumulate(step, &(mpmi_accumulation){.to = job.to, .give = scatter_block, .user = &job});
+  status = mpmi_accumulate(
+      step, &(mpmi_accumulation){
+                .to = job.to, .give = scatter_block, .user = &job, .flat = job.form >= MPMI_SCATTER_FLAT});
   if (!status) status = mpmi_step_failure(step);
   if (!status && projection->forces) status = mpmi_surfaces_give(step, nodes);
   if (!status && !projection->forces && mpmi_asks_host(step->settings, projection) &&

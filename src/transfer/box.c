@@ -19,6 +19,23 @@ MPMI_INLINE void add_box(int32_t values, const mpmi_box *box) {
     }
 }
 
+void KERNEL(add_flat_box)(const mpmi_box *box) {
+  const mpmi_v4 zero = mpmi_zero4();
+  for (int32_t i = 0; i < box->count[0]; ++i)
+    for (int32_t j = 0; j < box->count[1]; ++j) {
+      const int64_t row = i * box->tile_stride[0] + j * box->tile_stride[1];
+      double *tile = box->tile + 4 * row, *masses = box->masses + row;
+      double *nodes = box->nodes + 8 * (i * box->node_stride[0] + j * box->node_stride[1]);
+      for (int32_t k = 0; k < box->count[2]; ++k, tile += 4, nodes += 8) {
+        const mpmi_v4 flat = mpmi_load4(tile), mass = mpmi_set4(0.0, masses[k], 0.0, 0.0);
+        mpmi_store4(nodes, mpmi_sum4(mpmi_load4(nodes), mpmi_pair4(flat, mass)));
+        mpmi_store4(nodes + 4, mpmi_sum4(mpmi_load4(nodes + 4), mpmi_last_pair4(flat, zero)));
+        mpmi_store4(tile, zero);
+        masses[k] = 0.0;
+      }
+    }
+}
+
 /* Copies the nodes into the tile. */
 MPMI_INLINE void load_box(int32_t what, int32_t node_values, const mpmi_box *box) {
   const int32_t values = what == MPMI_TAKE_ALL ? 8 : 4, all = values == 8 ? MPMI_BOTH : MPMI_LOW;

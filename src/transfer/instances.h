@@ -1,30 +1,35 @@
 /* Every specialisation of scatter and gather that exists; define SCATTER or GATHER before including.
  * name = kernel, dim, width, form. */
 #ifdef SCATTER
-#if MPMI_WIDTH == 8
-#define SCATTER_HALVES(dim, width)                                                                           \
-  SCATTER(dim, width, MPMI_SCATTER_8_HALVES, scatter_##dim##_##width##_8_halves)
-#else
-#define SCATTER_HALVES(dim, width)
-#endif
-#define SCATTER_FORMS(dim, width)                                                                            \
-  SCATTER_HALVES(dim, width)                                                                                 \
+#define SCATTER_4(dim, width)                                                                                \
   SCATTER(dim, width, MPMI_SCATTER_4, scatter_##dim##_##width##_4)                                           \
   SCATTER(dim, width, MPMI_SCATTER_4_AFFINE, scatter_##dim##_##width##_4_affine)                             \
-  SCATTER(dim, width, MPMI_SCATTER_4_UNEVEN, scatter_##dim##_##width##_4_uneven)                             \
+  SCATTER(dim, width, MPMI_SCATTER_4_UNEVEN, scatter_##dim##_##width##_4_uneven)
+#define SCATTER_FLAT(dim, width)                                                                             \
+  SCATTER_4(dim, width)                                                                                      \
+  SCATTER(dim, width, MPMI_SCATTER_FLAT, scatter_##dim##_##width##_flat)                                     \
+  SCATTER(dim, width, MPMI_SCATTER_FLAT_AFFINE, scatter_##dim##_##width##_flat_affine)
+#define SCATTER_8(dim, width)                                                                                \
+  SCATTER_4(dim, width)                                                                                      \
   SCATTER(dim, width, MPMI_SCATTER_8, scatter_##dim##_##width##_8)                                           \
   SCATTER(dim, width, MPMI_SCATTER_8_AFFINE, scatter_##dim##_##width##_8_affine)
-SCATTER_FORMS(1, 2)
-SCATTER_FORMS(1, 3)
-SCATTER_FORMS(1, 4)
-SCATTER_FORMS(2, 2)
-SCATTER_FORMS(2, 3)
-SCATTER_FORMS(2, 4)
-SCATTER_FORMS(3, 2)
-SCATTER_FORMS(3, 3)
-SCATTER_FORMS(3, 4)
-#undef SCATTER_FORMS
-#undef SCATTER_HALVES
+SCATTER_FLAT(1, 2)
+SCATTER_FLAT(1, 3)
+SCATTER_FLAT(1, 4)
+SCATTER_FLAT(2, 2)
+SCATTER_FLAT(2, 3)
+SCATTER_FLAT(2, 4)
+SCATTER_8(3, 2)
+SCATTER_8(3, 3)
+SCATTER_8(3, 4)
+#if MPMI_WIDTH == 8
+SCATTER(3, 2, MPMI_SCATTER_8_HALVES, scatter_3_2_8_halves)
+SCATTER(3, 3, MPMI_SCATTER_8_HALVES, scatter_3_3_8_halves)
+SCATTER(3, 4, MPMI_SCATTER_8_HALVES, scatter_3_4_8_halves)
+#endif
+#undef SCATTER_8
+#undef SCATTER_FLAT
+#undef SCATTER_4
 #undef SCATTER
 #endif
 #ifdef GATHER

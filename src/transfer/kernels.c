@@ -46,6 +46,7 @@ PER_DIM(2)
 PER_DIM(3)
 
 void KERNEL(add_box)(int32_t, const mpmi_box *);
+void KERNEL(add_flat_box)(const mpmi_box *);
 void KERNEL(fetch_box)(int32_t, const mpmi_box *);
 void KERNEL(load_box)(int32_t, int32_t, const mpmi_box *);
 mpmi_updated KERNEL(update)(int32_t, double *, int64_t, const double *, double);
@@ -61,6 +62,7 @@ const mpmi_kernels KERNEL(kernels) = {
 #define GATHER(dim, width, form, name)  .gather[dim][width][form] = KERNEL(name),
 #include "transfer/instances.h"
     .add_box = KERNEL(add_box),
+    .add_flat_box = KERNEL(add_flat_box),
     .fetch_box = KERNEL(fetch_box),
     .load_box = KERNEL(load_box),
     .update = KERNEL(update),

@@ -25,6 +25,7 @@ typedef struct mpmi_kernels {
   mpmi_scatter_fn scatter[4][MPMI_MAX_WIDTH + 1][MPMI_SCATTER_FORMS]; /* by dim, width, form */
   mpmi_gather_fn gather[4][MPMI_MAX_WIDTH + 1][MPMI_GATHER_FORMS];
   mpmi_add_box_fn add_box;
+  mpmi_add_flat_box_fn add_flat_box;
   mpmi_fetch_box_fn fetch_box;
   mpmi_load_box_fn load_box;
   mpmi_update_fn update;

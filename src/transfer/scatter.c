@@ -69,7 +69,11 @@ MPMI_INLINE mpmi_node add_second(int32_t values, int32_t part, mpmi_node a, int3
 }
 
 MPMI_INLINE int32_t is_affine(int32_t form) {
-  return form == MPMI_SCATTER_4_AFFINE || form == MPMI_SCATTER_4_UNEVEN || form == MPMI_SCATTER_8_AFFINE;
+  return form == MPMI_SCATTER_4_AFFINE || form == MPMI_SCATTER_4_UNEVEN || form == MPMI_SCATTER_8_AFFINE ||
+         form == MPMI_SCATTER_FLAT_AFFINE;
+}
+MPMI_INLINE int32_t is_flat(int32_t form) {
+  return form >= MPMI_SCATTER_FLAT;
 }
 
 /* The values that nodes have in a form, and the part that the columns give to. */
@@ -119,6 +123,41 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t form, c
         mpmi_node_store(all, node + values * k, add_second(values, part, q, affine, W, last, k, p, slope));
       }
     }
+  }
+}
+
+/* Returns a + second weight * column of momentum and force together. */
+MPMI_INLINE mpmi_v4 add_flat_second(mpmi_v4 a, int32_t affine, const mpmi_weights *W, int32_t axis, int32_t k,
+                                    int64_t p, mpmi_v4 column) {
+  const double g = W->g[axis][k][p];
+  return affine ? mpmi_fma_pair4(a, W->u[axis][k][p], g, column) : mpmi_fma4(a, g, column);
+}
+
+/* Scatters momentum and force of 1-D or 2-D to the nodes of a stencil, and mass to theirs, row by row. */
+MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t affine, const mpmi_weights *W, int64_t p,
+                              const mpmi_first_order *of, double mass, double *MPMI_APART stencil,
+                              double *MPMI_APART masses) {
+  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
+  const mpmi_v4 a = mpmi_load4(of->a + 4 * p), column = mpmi_load4(of->column[0] + 4 * p);
+  mpmi_v4 value = a, slope = mpmi_load4(of->column[last] + 4 * p);
+  const mpmi_v4 step = slope,
+                weights = mpmi_set4(W->w[last][0][p], W->w[last][1][p], width > 2 ? W->w[last][2][p] : 0.0,
+                                    width > 3 ? W->w[last][3][p] : 0.0);
+  double row_mass = mass;
+  MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
+    if (dim < 2 && j > 0) break;
+    if (dim == 2) {
+      const double w = W->w[0][j][p];
+      value = add_flat_second(mpmi_scale4(w, a), affine, W, 0, j, p, column);
+      slope = mpmi_scale4(w, step);
+      row_mass = w * mass;
+    }
+    double *node = stencil + 4 * j * edge, *row = masses + j * edge;
+    MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
+      const mpmi_v4 q = mpmi_fma4(mpmi_load4(node + 4 * k), W->w[last][k][p], value);
+      mpmi_store4(node + 4 * k, add_flat_second(q, affine, W, last, k, p, slope));
+    }
+    mpmi_store4(row, mpmi_fma4(mpmi_load4(row), row_mass, weights));
   }
 }
 
@@ -247,6 +286,18 @@ MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, int32_t
   }
 }
 
+/* Packs momentum and force of 1-D or 2-D, four values together. */
+MPMI_INLINE void pack_flat(int32_t dim, int32_t affine, int64_t n, int32_t symmetric, const mpmi_given *given,
+                           mpmi_first_order *of) {
+  const int32_t y = dim > 1;
+  mpmi_pack(n, given->momentum[0], y ? given->momentum[1] : zero, given->force[0], y ? given->force[1] : zero,
+            of->a, 4);
+  for (int32_t k = 0; k < dim; ++k)
+    mpmi_pack(n, affine ? given->affine[k][0] : zero, affine && y ? given->affine[k][1] : zero,
+              k && symmetric ? given->stress[0][k] : given->stress[k][0], y ? given->stress[k][1] : zero,
+              of->column[k], 4);
+}
+
 /* Packs what was given in the order of a node's values. Components that the grid does not have are zero. Of a
  * symmetric stress the lower triangle is there. */
 MPMI_INLINE void pack(int32_t dim, int32_t form, const double *mass, int64_t n, int32_t symmetric,
@@ -277,12 +328,16 @@ MPMI_INLINE void give(int32_t dim, int32_t width, int32_t form, int32_t total, c
   if (total) give_nominal(dim, job, stress, s, n, &given);
   give_momentum(dim, width, form, total, job, stress, s, n, W, &given);
   if (form >= MPMI_SCATTER_8) give_force(dim, total, job, stress, s, n, &given);
-  pack(dim, form, job->mass + s, n, !total, &given, of);
+  if (is_flat(form))
+    pack_flat(dim, is_affine(form), n, !total, &given, of);
+  else
+    pack(dim, form, job->mass + s, n, !total, &given, of);
 }
 
 MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t begin,
                          int64_t end) {
-  const int64_t values = form >= MPMI_SCATTER_8 ? 8 : 4;
+  const int64_t values = form >= MPMI_SCATTER_8 && !is_flat(form) ? 8 : 4;
+  double *masses = mpmi_flat_masses(dim, width, job->tile);
   const mpmi_stress_rows stress = stress_rows(dim, job);
   mpmi_weights W;
   mpmi_first_order of;
@@ -302,6 +357,8 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
         mpmi_scatter_plain(dim, width, &W, p, of.a + 4 * p, stencil);
       else if (form == MPMI_SCATTER_4_AFFINE)
         scatter_linear(dim, width, &W, p, &of, stencil);
+      else if (is_flat(form))
+        scatter_flat(dim, width, is_affine(form), &W, p, &of, job->mass[s + p], stencil, masses + W.node[p]);
       else
         scatter_first_order(dim, width, form, &W, p, &of, stencil);
     }

@@ -9,7 +9,11 @@
  * the momentum; with 8 values they receive the force as well. AFFINE adds the affine part of the velocity;
  * UNEVEN does so for nodes that are not a spacing apart. HALVES takes the eight values of a node as two
  * registers of four, for processors that work on halves of longer ones in turn; it gives the same bits, and
- * is there where registers hold eight values. */
+ * is there where registers hold eight values.
+ *
+ * In 1-D and 2-D momentum and force are four values together: there the FLAT forms take the place of those
+ * with 8. A flat tile has [p_x p_y f_x f_y] of all nodes and then their masses, of which one register takes
+ * those of a row of the stencil. */
 enum {
   MPMI_SCATTER_4,
   MPMI_SCATTER_4_AFFINE,
@@ -17,8 +21,19 @@ enum {
   MPMI_SCATTER_8,
   MPMI_SCATTER_8_AFFINE,
   MPMI_SCATTER_8_HALVES,
+  MPMI_SCATTER_FLAT,
+  MPMI_SCATTER_FLAT_AFFINE,
   MPMI_SCATTER_FORMS
 };
+
+/* A flat tile has room for so many doubles per node: four, the mass, and what rows of masses, which are
+ * stored in fours, have beyond the last one. */
+enum { MPMI_FLAT_VALUES = 6 };
+/* Returns the masses of a flat tile. */
+static inline double *mpmi_flat_masses(int32_t dim, int32_t width, double *tile) {
+  const int64_t edge = MPMI_TILE_EDGE(dim, width);
+  return tile + 4 * (dim == 1 ? edge : dim == 2 ? edge * edge : edge * edge * edge);
+}
 
 /* A scatter reads component arrays of a set, each from slot 0 on. */
 typedef struct mpmi_scatter {

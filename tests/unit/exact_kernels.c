@@ -1,4 +1,5 @@
-/* Kernels that take another way to the same bits: nodes as two halves, wave speeds as squares. */
+/* Kernels that take another way to the same bits: nodes as two halves, nodes with masses of their own, wave
+ * speeds as squares. */
 #include "exact.h"
 
 #include <math.h>
@@ -47,6 +48,58 @@ START_TEST(halves_give_the_same_bits) {
   double force = 0.0;
   for (int32_t i = 4; i < 8 * MOST; i += 8) force += fabs(tile[0][i]);
   ck_assert(force > 1.0);
+}
+END_TEST
+
+/* Adds what a particle gives to nodes of eight values, node by node. */
+static void give(int32_t dim, int32_t width, const mpmi_scatter *job, const mpmi_weights *W, int32_t p,
+                 int64_t s, double *tile) {
+  static const int32_t entry[2][2] = {{0, 3}, {3, 1}};
+  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
+  for (int32_t i = 0; i < (dim == 2 ? width : 1); ++i)
+    for (int32_t k = 0; k < width; ++k) {
+      double *node = tile + 8 * (W->node[p] + i * edge + k);
+      const double outer = dim == 2 ? W->w[0][i][p] : 1.0, w = outer * W->w[last][k][p];
+      const double g[2] = {dim == 2 ? W->g[0][i][p] * W->w[1][k][p] : W->g[0][k][p],
+                           outer * W->g[last][k][p]};
+      node[3] += w * job->mass[s];
+      for (int32_t r = 0; r < dim; ++r) {
+        node[r] += w * job->mass[s] * job->v[r][s];
+        node[4 + r] += w * job->mass[s] * job->gravity[r];
+        for (int32_t c = 0; c < dim; ++c) node[4 + r] -= g[c] * job->volume[s] * job->stress[entry[r][c]][s];
+      }
+    }
+}
+
+/* A flat tile has what nodes of eight values would have, and all of it is added to them. */
+START_TEST(flat_tiles_have_every_value) {
+  static double row[ROWS][N], flat[8 * MOST], nodes[8 * MOST], exact[8 * MOST];
+  const int32_t isa = MPM_ISA_BASELINE + _i % 4, dim = 1 + _i / 4 % 2, width = 2 + _i / 8;
+  if (!has_isa(isa)) return;
+  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  const int32_t edge = MPMI_TILE_EDGE(dim, width), count = dim == 1 ? edge : edge * edge;
+  mpmi_scatter job = scatter_of(kernels, dim, width, 14 + (uint64_t)_i, row);
+  memset(flat, 0, sizeof flat), memset(nodes, 0, sizeof nodes), memset(exact, 0, sizeof exact);
+  job.tile = flat;
+  kernels->scatter[dim][width][MPMI_SCATTER_FLAT](&job, 0, N);
+  for (int64_t s = 0; s < N; s += MPMI_CHUNK) {
+    mpmi_weights W;
+    job.weights(job.axis, job.need, &job.points, s, MPMI_CHUNK, &W);
+    for (int32_t p = 0; p < MPMI_CHUNK; ++p) give(dim, width, &job, &W, p, s + p, exact);
+  }
+  for (int32_t i = 5 * count; i < 8 * MOST; ++i) ck_assert(flat[i] == 0.0);
+  const mpmi_box box = {.tile = flat,
+                        .masses = mpmi_flat_masses(dim, width, flat),
+                        .nodes = nodes,
+                        .count = {1, dim == 1 ? 1 : edge, edge},
+                        .tile_stride = {count, edge},
+                        .node_stride = {count, edge}};
+  kernels->add_flat_box(&box);
+  for (int32_t i = 0; i < 8 * count; ++i) ck_within("a node", nodes[i], exact[i], 1e-12);
+  for (int32_t i = 0; i < 8 * MOST; ++i) ck_assert(flat[i] == 0.0);
+  double mass = 0.0;
+  for (int32_t i = 3; i < 8 * count; i += 8) mass += nodes[i];
+  ck_assert(mass > 0.5 * N);
 }
 END_TEST
 
@@ -108,6 +161,7 @@ END_TEST
 TCase *kernels_case(void) {
   TCase *tc = tcase_create("kernels");
   tcase_add_loop_test(tc, halves_give_the_same_bits, 0, 3);
+  tcase_add_loop_test(tc, flat_tiles_have_every_value, 0, 24);
   tcase_add_loop_test(tc, squares_lead_to_the_same_rate, 0, 12);
   tcase_add_loop_test(tc, only_wide_registers_are_halved, 0, 4);
   return tc;
