@@ -73,7 +73,8 @@ typedef struct mpmi_law {
   size_t constants_size;
   void (*prepare)(const double *value, void *constants);
   mpmi_law_fn stress;
-  mpmi_law_fn plane_stored; /* stress in 2-D where F has the rows that a set stores, or NULL */
+  /* Of laws that look at F alone: stress in 2-D where F has the rows that a set stores; or NULL. */
+  mpmi_law_fn plane_stored;
   mpmi_tangent_fn tangent;
   /* 1 when the tangent has major symmetry in 2-D and 3-D too. */
   int32_t (*is_symmetric)(const void *constants);

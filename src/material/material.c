@@ -260,10 +260,6 @@ void mpmi_material_evaluate_stored(const mpm_material *material, const mpm_mater
   material->law->plane_stored(material->constants, 2, batch);
 }
 
-int32_t mpmi_material_takes_stored(const mpm_material *material, int32_t dim) {
-  return dim != 2 || (material->law && material->law->plane_stored);
-}
-
 int32_t mpmi_may_be_viscous(const mpm_material *material) {
   return material->law ? material->law->viscous : 1;
 }

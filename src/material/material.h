@@ -22,10 +22,9 @@ struct mpm_material {
 
 /* Runs a material's law, built in or the host's, on a batch. Callback statuses pass through unchanged. */
 mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t dim, const mpm_material_batch *batch);
-/* Does so in 2-D on a batch whose F has the rows that a set stores, and says whether the law can. In 1-D and
- * 3-D those are the rows of a batch. */
+/* Does so in 2-D, with a law that looks at F alone, on a batch whose F has the rows that a set stores. In 1-D
+ * and 3-D those are the rows of a batch. */
 void mpmi_material_evaluate_stored(const mpm_material *material, const mpm_material_batch *batch);
-int32_t mpmi_material_takes_stored(const mpm_material *material, int32_t dim);
 /* 0 when the law never writes a kinematic viscosity. */
 int32_t mpmi_may_be_viscous(const mpm_material *material);
 /* 1 when stress follows from F, and from the step where the law is viscous. */

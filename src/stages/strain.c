@@ -24,11 +24,10 @@ static int32_t needs_F_alone(const mpmi_settings *settings, const mpm_particles 
   return looks_at_F_alone(set->material) && !mpmi_dissipates(settings, m) && !mpmi_expands(set);
 }
 
-/* Laws that look at F alone, and take its rows as a set stores them, need no copy of F and stress. */
+/* Laws that look at F alone take its rows as a set stores them, and need no copy of F and stress. */
 static int32_t works_in_place(const mpmi_settings *settings, const mpm_particles *set, int32_t m) {
-  return needs_F_alone(settings, set, m) && mpmi_material_takes_stored(set->material, set->grid->dim) &&
-         !mpmi_is_axisymmetric(set->grid) && !mpmi_is_plane_stress(set->grid) &&
-         !settings->desc.locking_remedy && !mpmi_is_implicit(settings);
+  return needs_F_alone(settings, set, m) && !mpmi_is_axisymmetric(set->grid) &&
+         !mpmi_is_plane_stress(set->grid) && !settings->desc.locking_remedy && !mpmi_is_implicit(settings);
 }
 
 /* Sums need the roots of few wave speeds. Reference speeds, sheets and stiffness of springs need those of

@@ -81,9 +81,13 @@ START_TEST(registry_describes_every_law) {
 }
 END_TEST
 
+/* Laws that look at F alone have a kernel that takes it as sets store it in 2-D. */
 START_TEST(kernels_differ) {
   for (int32_t law = 0; law < MPMI_LAW_COUNT; ++law) {
     const mpmi_law *baseline = mpmi_law_of(MPM_ISA_BASELINE, law);
+    const int32_t looks_at_F_alone =
+        baseline->stress_from_F && !baseline->state_count && baseline->kinematics == MPMI_F_DEFORMS;
+    ck_assert_int_eq(baseline->plane_stored != NULL, looks_at_F_alone);
     ck_assert(baseline->stress != mpmi_law_of(MPM_ISA_BASELINE, (law + 1) % MPMI_LAW_COUNT)->stress);
 #if MPMI_HAS_X86
     ck_assert(mpmi_law_of(MPM_ISA_AVX2, law)->stress != baseline->stress);
