@@ -27,7 +27,8 @@ static void clear_task(void *data, int64_t k) {
   const mpmi_settings *settings = job->step->settings;
   const mpmi_blocks *b = &job->step->layout->blocks;
   const int64_t each = (int64_t)b->nodes * sum->to->values;
-  const int32_t values = sum->flat ? MPMI_FLAT_VALUES : sum->to->values;
+  /* tiles of other parts, which are never flat, are unpacked into the same memory */
+  const int32_t values = sum->flat && !job->step->layout->parts ? MPMI_FLAT_VALUES : sum->to->values;
   if (!sum->gathers) mpmi_tile_use(settings->grid, tile_of(job, k), values);
   memset(tile_of(job, k), 0, (size_t)(values * mpmi_tile_nodes(settings->grid)) * sizeof(double));
   const mpmi_share share = mpmi_share_of(settings, b->count, k);
