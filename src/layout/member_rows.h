@@ -20,7 +20,8 @@ enum {
 typedef struct mpmi_member_rows {
   double *force;        /* [dim] external force beside gravity */
   double *mean;         /* [dim] mean velocities of prescribed particles, where there is a motion */
-  double *wave_speed;   /* [1] where the law runs before the particles move */
+  double *wave_speed;   /* [1] where the law runs before the particles move: what its batch has, with squares
+                           where that has squares */
   double *nodal_stress; /* the stress in the forces on nodes, where it is not that of the particles
                            (stages/cell_pressure.c) */
   double *heat;         /* [MPMI_HEAT_ROWS] where the set has heat: MPMI_ROW_... */

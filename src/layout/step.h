@@ -52,7 +52,8 @@ typedef struct mpmi_workspace {
   void *scratch_memory;
   size_t scratch_bytes;
   mpmi_step_rows rows;
-  mpmi_sums *block_sums;   /* [blocks] energies, momenta and rates of the new state */
+  mpmi_sums *block_sums;   /* [blocks] energies and momenta of the new state; rates, the largest of the blocks
+                              that a task has had so far */
   mpmi_stops *block_stops; /* [blocks], where there are friction walls */
   int64_t block_sums_capacity, block_stops_capacity;
   mpmi_tally tally;

@@ -56,11 +56,12 @@ void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t bl
   mpmi_box box;
   for (int32_t n = 0; n < b->neighbours; ++n) {
     if (!find_box(b, &spans, block, n, nodes, tile, flat ? 4 : nodes->values, &box)) continue;
-    box.masses = mpmi_flat_masses(b->grid->dim, b->grid->width, tile) + (box.tile - tile) / 4;
-    if (flat)
-      kernels->add_flat_box(&box);
-    else
+    if (!flat) {
       kernels->add_box(nodes->values, &box);
+      continue;
+    }
+    box.masses = mpmi_flat_masses(b->grid->dim, b->grid->width, tile) + (box.tile - tile) / 4;
+    kernels->add_flat_box(&box);
   }
 }
 

@@ -151,22 +151,24 @@ static void look(mpmi_law_batch *b, int64_t p) {
     fault->cause = MPM_NONFINITE, fault->what = "the material's energy is infinite";
 }
 
-/* A built-in law refuses particles by what it gives for their wave speed; inert slots are none of its
- * concern. */
+/* A built-in law refuses particles by what it gives for the squares of their wave speeds; inert slots are
+ * none of its concern. Other negative squares are those of states without waves, and found with the stress.
+ */
 static mpm_status find_refused(mpmi_law_batch *b, const mpmi_law *law) {
   for (int64_t p = 0; law->refusal_count && p < b->batch.n; ++p) {
     if (!(b->wave_speed[p] < 0.0)) continue;
+    const double refused = -1.0 - b->wave_speed[p];
     if (b->batch.id[p] < 0) {
       b->wave_speed[p] = 0.0;
-    } else if (!b->fault.cause) {
-      const mpmi_law_refusal *refusal = &law->refusal[(int32_t)(-1.0 - b->wave_speed[p])];
+    } else if (!b->fault.cause && refused >= 0.0 && refused < law->refusal_count) {
+      const mpmi_law_refusal *refusal = &law->refusal[(int32_t)refused];
       b->fault = (mpmi_law_fault){refusal->cause, b->batch.id[p], refusal->what};
     }
   }
   return b->fault.cause;
 }
 
-/* A built-in law gives the squares of wave speeds. */
+/* A built-in law gives the squares of wave speeds; the root of a negative one is no number. */
 static void take_roots(mpmi_law_batch *b) {
   for (int64_t p = 0; p < b->batch.n; ++p) b->wave_speed[p] = sqrt(b->wave_speed[p]);
 }

@@ -85,6 +85,7 @@ MPMI_INLINE mpmi_lanes mpmi_lanes_sqrt(mpmi_lanes v) {
 #elif defined(__AVX2__) && MPMI_WIDTH == 4
 #define MPMI_ANY(mask) (!_mm256_testz_si256((__m256i)(mask), (__m256i)(mask)))
 #else
+_Static_assert(MPMI_LANES == 2, "other registers have more lanes to look at");
 #define MPMI_ANY(mask) (((mask)[0] | (mask)[1]) != 0)
 #endif
 MPMI_INLINE uint32_t mpmi_lanes_any(mpmi_mask mask, uint32_t flag) {

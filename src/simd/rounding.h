@@ -1,5 +1,5 @@
-/* Rounding to integers, for |x| < 2^51 without instructions of its own, so that every instruction set can
- * vectorise it. */
+/* Rounding to integers. What needs no instruction of its own, so that every instruction set can vectorise it,
+ * is right for |x| < 2^51. */
 #ifndef MPMI_ROUNDING_H
 #define MPMI_ROUNDING_H
 

@@ -139,12 +139,13 @@ static void restore_hole(mpmi_batch *b, int64_t slot) {
   }
 }
 
+/* A law may have given the square of a wave speed, which is negative where there are no waves. */
 static int32_t law_is_finite(const mpmi_batch *b, int64_t slot) {
   const mpm_particles *set = b->set;
   const int64_t p = slot - b->begin;
   return finite_row(set, MPMI_STRESS, mpmi_stress_components(set->grid->dim), slot) &&
          finite_row(set, MPMI_STATE, set->material->state_count, slot) && isfinite(b->law.wave_speed[p]) &&
-         isfinite(b->law.viscosity[p]);
+         b->law.wave_speed[p] >= 0.0 && isfinite(b->law.viscosity[p]);
 }
 
 /* Finds the particles behind the flags of the batch. */

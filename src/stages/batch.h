@@ -107,11 +107,18 @@ int32_t mpmi_strain_deform(mpmi_batch *b);
 /* Runs the law there; b->law_ran tells whether it has answered. */
 void mpmi_strain_law(mpmi_batch *b);
 
+/* Makes volumes, which have one copy, from a copy of F: after a step that failed, and where the host looks on
+ * in between. */
+void mpmi_make_volumes(const mpmi_layout *layout, int32_t copy);
+
 /* ---- dissipation.c ----------------------------------------------------------------------------------- */
 /* Finds what the particles of a batch dissipate, whose law has just run. */
 void mpmi_dissipation_find(mpmi_batch *b);
 
-/* ---- strain.c, continued ------------------------------------------------------------------------------- */
+/* ---- batch_sums.c ------------------------------------------------------------------------------------ */
+/* Prepares the sums over the particles of a set. */
+void mpmi_sums_bind(mpmi_batch *b);
+
 /* Where the law runs before the particles move, the sums over the motion want its wave speed: these leave it
  * in the member's row meanwhile, and fetch it from there. */
 void mpmi_wave_speed_leave(const mpmi_batch *b);
@@ -120,10 +127,6 @@ void mpmi_wave_speed_fetch(mpmi_batch *b);
 /* Adds energies, momenta and rates of the batch to those of its block; what: MPMI_SUMS_LAW,
  * MPMI_SUMS_MOTION. */
 void mpmi_batch_sums(mpmi_batch *b, int32_t what);
-
-/* Makes volumes, which have one copy, from a copy of F: after a step that failed, and where the host looks on
- * in between. */
-void mpmi_make_volumes(const mpmi_layout *layout, int32_t copy);
 
 /* Gives the job the second moments of the basis at n particles from slot `begin`, for the affine part of the
  * angular momentum; copy: of their positions. buffer: [3][ld]. */

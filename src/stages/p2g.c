@@ -108,8 +108,10 @@ static void choose_form(p2g_job *job) {
   const int32_t moments = settings->transfer->moments;
   if (mpmi_has_increments(job->to)) {
     const int32_t plain = settings->context->works_by_halves ? MPMI_SCATTER_8_HALVES : MPMI_SCATTER_8;
-    job->form = job->affine ? MPMI_SCATTER_8_AFFINE : plain;
-    if (settings->grid->dim < 3) job->form = job->affine ? MPMI_SCATTER_FLAT_AFFINE : MPMI_SCATTER_FLAT;
+    if (settings->grid->dim < 3)
+      job->form = job->affine ? MPMI_SCATTER_FLAT_AFFINE : MPMI_SCATTER_FLAT;
+    else
+      job->form = job->affine ? MPMI_SCATTER_8_AFFINE : plain;
     job->need =
         moments == MPMI_NEED_MLS ? moments : MPMI_NEED_GRADIENT | (job->affine ? moments : MPMI_NO_FIRST);
   } else if (job->affine && settings->grid->family >= MPMI_FAMILY_OPEN_BSPLINE2) {

@@ -5,9 +5,10 @@
 #include "simd/rounding.h"
 #include "transfer/sums.h"
 
-/* What has been added up; and the largest rate so far, with what is surely below rate h_k. */
+/* What has been added up; the least of what stands for wave speeds; and the largest rate so far, with what is
+ * surely below rate h_k. */
 typedef struct mpmi_tally {
-  mpmi_lanes kinetic, affine, strain, work, viscosity, bad, momentum[3], angular[3], below[3];
+  mpmi_lanes kinetic, affine, strain, work, viscosity, bad, least, momentum[3], angular[3], below[3];
   double rate;
 } mpmi_tally;
 
@@ -78,21 +79,25 @@ MPMI_INLINE void set_rate(int32_t dim, const mpmi_sums_job *job, double rate, mp
   for (int32_t k = 0; k < dim; ++k) t->below[k] = zero + margin * rate * job->spacing[k];
 }
 
-/* Takes the largest (|v_k| + c) / h_k. Few c are the largest so far: others are known from their squares to
- * be less than rate h_k - |v_k| for each axis, and their roots are not taken. */
-MPMI_INLINE void add_rate(int32_t dim, const mpmi_sums_job *job, mpmi_lanes c, const mpmi_lanes *v,
-                          mpmi_tally *t) {
+/* Tells of the squares of wave speeds c whether a rate may be the largest so far: others are less than
+ * rate h_k - |v_k| for each axis. */
+MPMI_INLINE int32_t may_be_largest(int32_t dim, const mpmi_sums_job *job, mpmi_lanes square,
+                                   const mpmi_lanes *v, const mpmi_tally *t) {
   const mpmi_lanes zero = {0.0};
-  if (job->squared) {
-    mpmi_lanes room = t->below[0] - job->carried * mpmi_lanes_abs(v[0]);
-    for (int32_t k = 1; k < dim; ++k)
-      room = mpmi_lanes_min(room, t->below[k] - job->carried * mpmi_lanes_abs(v[k]));
-    room = mpmi_lanes_max(zero, room);
-    if (!mpmi_lanes_any(~((c >= zero) & (c < room * room)), 1)) return;
-    c = mpmi_lanes_sqrt(c);
-    t->bad += c * 0.0;
-  }
-  mpmi_lanes rate = zero;
+  mpmi_lanes room = t->below[0] - job->carried * mpmi_lanes_abs(v[0]);
+  for (int32_t k = 1; k < dim; ++k)
+    room = mpmi_lanes_min(room, t->below[k] - job->carried * mpmi_lanes_abs(v[k]));
+  room = mpmi_lanes_max(zero, room);
+  return mpmi_lanes_any(~(square < room * room), 1) != 0;
+}
+
+/* Takes the largest (|v_k| + c) / h_k. Few are the largest so far, and the roots of other squares are not
+ * taken. */
+MPMI_INLINE void add_rate(int32_t dim, const mpmi_sums_job *job, mpmi_lanes c_or_square, const mpmi_lanes *v,
+                          mpmi_tally *t) {
+  if (job->squared && !may_be_largest(dim, job, c_or_square, v, t)) return;
+  const mpmi_lanes c = job->squared ? mpmi_lanes_sqrt(c_or_square) : c_or_square;
+  mpmi_lanes rate = {0.0};
   for (int32_t k = 0; k < dim; ++k)
     rate = mpmi_lanes_max(rate, (job->carried * mpmi_lanes_abs(v[k]) + c) * job->inverse_spacing[k]);
   const double largest = mpmi_lanes_largest(rate);
@@ -102,10 +107,11 @@ MPMI_INLINE void add_rate(int32_t dim, const mpmi_sums_job *job, mpmi_lanes c, c
 MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpmi_tally *t) {
   const mpmi_lanes m = mpmi_lanes_load(job->mass + s), v0 = mpmi_lanes_load(job->initial_volume + s);
   const mpmi_mask live = v0 > 0.0; /* holes have no volume, and what the law says of them is of no interest */
-  const mpmi_lanes c = mpmi_lanes_where(live, mpmi_lanes_load(job->wave_speed + s));
+  const mpmi_lanes c_or_square = mpmi_lanes_where(live, mpmi_lanes_load(job->wave_speed + s));
   if (job->what & MPMI_SUMS_LAW) {
     t->strain += v0 * mpmi_lanes_where(live, mpmi_lanes_load(job->energy + s));
-    t->bad += c * 0.0; /* not 0 where a value is not finite */
+    t->bad += c_or_square * 0.0; /* not 0 where a value is not finite */
+    t->least = mpmi_lanes_min(t->least, c_or_square);
     if (job->kinematic_viscosity) {
       const mpmi_lanes nu = mpmi_lanes_where(live, mpmi_lanes_load(job->kinematic_viscosity + s));
       t->viscosity = mpmi_lanes_max(t->viscosity, nu);
@@ -125,11 +131,27 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpm
     t->kinetic += p * v[k];
     add_work(job, s, k, m, x[k], t);
   }
-  add_rate(dim, job, c, v, t);
+  add_rate(dim, job, c_or_square, v, t);
   for (int32_t r = 0; r < 3; ++r) add_angular(dim, job, s, r, m, x, v, t);
   for (int32_t r = 0; r < 3 && job->F[0]; ++r) add_reference_angular(dim, job, s, r, m, t);
   add_affine(dim, job, s, m, t);
 }
+
+/* The places of what is summed over lanes, eight at a time; in 3-D alone there are more than eight. */
+enum {
+  SUM_KINETIC,
+  SUM_AFFINE,
+  SUM_STRAIN,
+  SUM_WORK,
+  SUM_BAD,
+  SUM_MOMENTUM_X,
+  SUM_MOMENTUM_Y,
+  SUM_ANGULAR_Z,
+  SUM_MOMENTUM_Z,
+  SUM_ANGULAR_X,
+  SUM_ANGULAR_Y,
+  SUMMED = 16
+};
 
 /* Sums each of eight registers over its lanes, the first lane first. */
 MPMI_INLINE void sum_lanes(const mpmi_lanes *of, double *sum) {
@@ -147,30 +169,39 @@ MPMI_INLINE void sum_lanes(const mpmi_lanes *of, double *sum) {
 MPMI_INLINE uint32_t sum_batch(int32_t dim, const mpmi_sums_job *job, int64_t n, mpmi_sums *sums) {
   const mpmi_lanes zero = {0.0};
   mpmi_tally t;
-  t.kinetic = t.affine = t.strain = t.work = t.viscosity = t.bad = zero;
+  t.kinetic = t.affine = t.strain = t.work = t.viscosity = t.bad = t.least = zero;
   for (int32_t k = 0; k < 3; ++k) t.momentum[k] = t.angular[k] = zero;
   set_rate(dim, job, sums->rate, &t);
   for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) add_group(dim, job, s, &t);
-  double of_all[8], of_three[8] = {0.0};
-  const mpmi_lanes first[8] = {t.kinetic, t.affine,      t.strain,      t.work,
-                               t.bad,     t.momentum[0], t.momentum[1], t.angular[2]};
-  const mpmi_lanes rest[8] = {t.momentum[2], t.angular[0], t.angular[1], zero, zero, zero, zero, zero};
-  sum_lanes(first, of_all);
-  if (dim == 3) sum_lanes(rest, of_three);
-  sums->kinetic += 0.5 * of_all[0];
-  sums->affine += 0.5 * of_all[1];
-  sums->strain += of_all[2];
-  sums->work += of_all[3];
-  sums->momentum[0] += of_all[5];
-  sums->momentum[1] += of_all[6];
-  sums->momentum[2] += of_three[0];
-  sums->angular[0] += of_three[1];
-  sums->angular[1] += of_three[2];
-  sums->angular[2] += of_all[7];
+  double sum[SUMMED] = {0.0};
+  const mpmi_lanes of[SUMMED] = {[SUM_KINETIC] = t.kinetic,
+                                 [SUM_AFFINE] = t.affine,
+                                 [SUM_STRAIN] = t.strain,
+                                 [SUM_WORK] = t.work,
+                                 [SUM_BAD] = t.bad,
+                                 [SUM_MOMENTUM_X] = t.momentum[0],
+                                 [SUM_MOMENTUM_Y] = t.momentum[1],
+                                 [SUM_MOMENTUM_Z] = t.momentum[2],
+                                 [SUM_ANGULAR_X] = t.angular[0],
+                                 [SUM_ANGULAR_Y] = t.angular[1],
+                                 [SUM_ANGULAR_Z] = t.angular[2]};
+  sum_lanes(of, sum);
+  if (dim == 3) sum_lanes(of + 8, sum + 8);
+  sums->kinetic += 0.5 * sum[SUM_KINETIC];
+  sums->affine += 0.5 * sum[SUM_AFFINE];
+  sums->strain += sum[SUM_STRAIN];
+  sums->work += sum[SUM_WORK];
+  sums->momentum[0] += sum[SUM_MOMENTUM_X];
+  sums->momentum[1] += sum[SUM_MOMENTUM_Y];
+  sums->momentum[2] += sum[SUM_MOMENTUM_Z];
+  sums->angular[0] += sum[SUM_ANGULAR_X];
+  sums->angular[1] += sum[SUM_ANGULAR_Y];
+  sums->angular[2] += sum[SUM_ANGULAR_Z];
   const double viscous_rate = mpmi_lanes_largest(t.viscosity) * job->viscous_factor;
   sums->rate = t.rate;
   if (viscous_rate > sums->viscous_rate) sums->viscous_rate = viscous_rate;
-  return of_all[4] == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE;
+  const int32_t good = sum[SUM_BAD] == 0.0 && mpmi_lanes_smallest(t.least) >= 0.0;
+  return good ? 0u : (uint32_t)MPMI_NONFINITE;
 }
 
 #define SUMS(dim)                                                                                            \

@@ -1,6 +1,7 @@
-/* Materials as handles: the registry and refused arguments; and the logarithms of the
- * kernels. The laws themselves are tested in material_*.c. */
+/* Materials as handles: the registry, what laws say of themselves, and refused arguments; and the logarithms
+ * of the kernels. The laws themselves are tested in material_*.c. */
 #include "law_sample.h"
+#include "particles/law_batch.h"
 #include "simd/vector_math.h"
 
 enum { MOST_PARAMS = 16 };
@@ -269,6 +270,56 @@ static int32_t all_params(const char *model, mpm_param *params) {
   return k;
 }
 
+/* Sums look at the kinematic viscosity of those laws alone that say that they write it. */
+START_TEST(viscous_laws_say_so) {
+  for (int32_t law = 0; law < mpm_material_model_count(); ++law) {
+    const char *name = mpm_material_model_name(law);
+    mpm_param params[MOST_PARAMS];
+    mpm_material *m = law_material(MPM_ISA_BASELINE, name, params, all_params(name, params));
+    static sample s;
+    sample_clear(&s, 0.01);
+    s.batch.state_count = m->state_count;
+    for (int i = 0; i < ITEMS; ++i) s.viscosity[i] = sample_unset;
+    for (int c = 0; c < 6; ++c)
+      for (int i = 0; i < ITEMS; ++i) s.stress[c * LD + i] = 0.0;
+    ck_ok(m->context, mpmi_material_evaluate(m, 3, &s.batch));
+    for (int i = 0; i < ITEMS; ++i)
+      ck_assert_msg((s.viscosity[i] != sample_unset) == m->law->viscous, "%s", name);
+    law_material_free(m);
+  }
+}
+END_TEST
+
+/* A law that lists one refusal, and gives squares of wave speeds that are none of it. */
+static double given_square;
+static void give_square(const void *constants, int32_t dim, const mpm_material_batch *batch) {
+  (void)constants, (void)dim;
+  for (int64_t p = 0; p < batch->n; ++p) batch->wave_speed[p] = given_square;
+}
+
+START_TEST(refusals_are_listed) {
+  static const mpmi_law_refusal only = {MPM_CUT_DT, "what it refuses"};
+  static const double squares[] = {-0.5, -2.0, -3e9, MPMI_REFUSED(0)};
+  const mpmi_law fake = {.name = "fake", .refusal = &only, .refusal_count = 1, .stress = give_square};
+  mpm_material of = {.law = &fake};
+  const int64_t id[MPMI_BATCH_OWN] = {7};
+  void *memory = aligned_alloc(64, mpmi_law_batch_bytes(&of));
+  for (int k = 0; k < 4; ++k) {
+    mpmi_law_batch b;
+    mpmi_law_batch_bind(&b, &of, memory);
+    b.batch.n = 1, b.batch.id = id;
+    given_square = squares[k];
+    const mpm_status status = mpmi_law_batch_run(&b, &of, 3);
+    ck_assert_int_eq(status, k == 3 ? MPM_CUT_DT : MPM_OK);
+    if (k == 3)
+      ck_assert(b.fault.particle == 7 && b.fault.what == only.what);
+    else
+      ck_assert(isnan(b.wave_speed[0]));
+  }
+  free(memory);
+}
+END_TEST
+
 /* What a law makes of its parameters is the same on every instruction set to the last bit. */
 START_TEST(constants_agree) {
   uint64_t state = 31;
@@ -379,6 +430,8 @@ Suite *material_suite(void) {
   tcase_add_checked_fixture(handles, setup, teardown);
   tcase_add_test(handles, registry_describes_every_law);
   tcase_add_test(handles, kernels_differ);
+  tcase_add_test(handles, viscous_laws_say_so);
+  tcase_add_test(handles, refusals_are_listed);
   tcase_add_test(handles, refused_names);
   tcase_add_test(handles, refused_arguments);
   tcase_add_test(handles, refused_values);

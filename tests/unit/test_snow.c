@@ -215,6 +215,33 @@ START_TEST(steps_of_a_grid) {
 }
 END_TEST
 
+/* Snow with a negative ratio of Poisson, far from its plastic limits, has no waves once it has stretched
+ * enough: the step in which that comes to pass ends, whichever pass asks the law. */
+START_TEST(states_without_waves) {
+  static const int32_t schemes[] = {MPM_USL, MPM_USF, MPM_MUSL};
+  snow of = with(0.0, 0.025, 1.0, 2.0);
+  of.value[0].value = of.value[2].value = 100.0;
+  of.value[1].value = -0.9;
+  world w;
+  world_desc d = world_default(3, 16, 0.5);
+  d.law = (world_law){.model = "snow", .params = of.value, .param_count = PARAMS};
+  d.stepper.scheme = schemes[_i];
+  mpm_particles *set = world_open(&w, &d);
+  const int64_t n = world_fill_cube(&w, set, 3.0, 5.0);
+  double *v = fetch(&w, set, "position", 3);
+  for (int64_t i = 0; i < 3 * n; ++i) v[i] = 5.0 * (v[i] - 4.0);
+  put(&w, set, "velocity", 3, v);
+  free(v);
+  mpm_status status = MPM_OK;
+  for (int k = 0; k < 60 && !status; ++k) status = mpm_step(w.stepper, 2e-3, NULL);
+  ck_assert_int_eq(status, MPM_NONFINITE);
+  ck_assert_ptr_nonnull(strstr(last_error_of(&w), "wave speed is not finite"));
+  ck_assert_ptr_nonnull(strstr(last_error_of(&w), "particle"));
+  ck_holds(world_stable_dt(&w) > 0.0); /* of the state before */
+  world_close(&w);
+}
+END_TEST
+
 /* ---- random states ------------------------------------------------------------------------------------- */
 enum { RANDOM = 100000, TESTED = 3000 };
 
@@ -379,6 +406,7 @@ Suite *snow_suite(void) {
   tcase_add_test(tc, parameters_are_refused);
   tcase_add_loop_test(tc, state_of_the_host, 0, 3);
   tcase_add_loop_test(tc, steps_of_a_grid, 0, 3);
+  tcase_add_loop_test(tc, states_without_waves, 0, 3);
   tcase_add_test(tc, random_states);
   tcase_add_test(tc, random_tangents);
   tcase_add_test(tc, frames);
