@@ -463,10 +463,11 @@ export interface StepperDesc {
   linear_max_iterations?: number | boolean;
   /**
    * 1: with MPM_MUSL particles move by the projected velocities, which strain them too: x += dt sum w v, with
-   * the v of the second projection. Bodies in sustained tension are stable then, whose particles otherwise
-   * move by more than they are strained by (theory, section 11.1). 0 (default): they move by the updated
-   * velocities, as Sulsky et al. 1995. MPM_E_UNSUPPORTED with other schemes, which have no such velocities
-   * after the update. Since 0.2.0, in the place of `reserved`.
+   * the v of the second projection. Bodies in sustained tension, whose particles otherwise move by more than
+   * they are strained by (theory, section 11.1), are stable then, but for a nearly incompressible one whose
+   * volume is forced to grow. 0 (default): they move by the updated velocities, as Sulsky et al. 1995.
+   * MPM_E_UNSUPPORTED with other schemes, which have no such velocities after the update. Since 0.2.0, in the
+   * place of `reserved`.
    */
   projected_positions?: number | boolean;
   /**
@@ -504,7 +505,8 @@ export interface AdvanceDesc {
    * largest share at which bodies were found to stay bounded, by basis and scheme: with all transfers in 1-D
    * and 2-D (of MPM_XPIC order 2, of MPM_FMPM 2 and 8), with MPM_FLIP in 3-D. With MPM_USL that is 0.40 on
    * MPM_LINEAR and MPM_BSPLINE2, 0.60 on MPM_BSPLINE3, 0.27 with GIMP; with MPM_MUSL and MPM_USF 0.60, 0.67,
-   * 0.67 and 0.47, but 0.33 with MPM_CPGIMP and MPM_USF. Implicit: ignored.
+   * 0.67 and 0.47, but 0.33 with MPM_CPGIMP and MPM_USF. On MPM_LINEAR no share is safe with MPM_USL, nor
+   * with affine transfers, where bodies cross into empty cells. Implicit: ignored.
    */
   cfl?: number;
   /** most that the first sub-step takes; 0 (default): the controller's dt */

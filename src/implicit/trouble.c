@@ -98,8 +98,19 @@ static mpm_status worst_row(const mpmi_balance *balance, int64_t *worst, double 
   return status;
 }
 
+/* On updated grids with the linear basis bodies sink further with each step, and short ones stop earlier. */
+static int32_t sinks_by_steps(const mpmi_settings *settings) {
+  return settings->desc.quasi_static && settings->grid->desc.basis == MPM_LINEAR &&
+         !mpmi_is_total_lagrangian(settings->grid);
+}
+
 const char *mpmi_smaller_steps(const mpmi_balance *balance) {
-  return balance->step->is_cut ? "smaller steps were tried" : "use a smaller dt, or mpm_advance";
+  const int32_t sinks = sinks_by_steps(balance->settings);
+  if (balance->step->is_cut)
+    return sinks ? "smaller steps were tried: take total_lagrangian = 1, or a smooth basis"
+                 : "smaller steps were tried";
+  return sinks ? "use mpm_advance, or where steps are short total_lagrangian = 1 or a smooth basis"
+               : "use a smaller dt, or mpm_advance";
 }
 
 static int32_t falls(const mpmi_newton *newton, int32_t last, double by) {
@@ -121,18 +132,22 @@ static const char *advice(const mpmi_balance *balance, int32_t touches_change) {
   return mpmi_smaller_steps(balance);
 }
 
-mpm_status mpmi_tell_not_converged(mpmi_balance *balance, int32_t touches_change) {
-  mpmi_failure *failure = &balance->step->failure;
-  double share;
+/* Notes the node with the largest share of the residual, and the particle beside it. */
+static mpm_status find_worst(mpmi_balance *balance, double *share) {
   int64_t row;
   row_node node;
   int32_t any;
-  mpm_status status = worst_row(balance, &row, &share);
+  mpm_status status = worst_row(balance, &row, share);
   if (!status) status = find_node(balance, row, &node, &any);
-  if (!status && any) {
-    failure->node = node.number;
-    status = find_particle(balance, node.position);
-  }
+  if (status || !any) return status;
+  balance->step->failure.node = node.number;
+  return find_particle(balance, node.position);
+}
+
+mpm_status mpmi_tell_not_converged(mpmi_balance *balance, int32_t touches_change) {
+  const mpmi_failure *failure = &balance->step->failure;
+  double share;
+  const mpm_status status = find_worst(balance, &share);
   if (status) return status;
   return mpmi_fail(
       balance->settings->context, MPM_NOT_CONVERGED,
@@ -143,9 +158,39 @@ mpm_status mpmi_tell_not_converged(mpmi_balance *balance, int32_t touches_change
       advice(balance, touches_change));
 }
 
+/* Iterations of the linear solver that the host has chosen may end early; of a choice of its own the library
+ * has said already what helps. */
+static const char *advice_on_solver(const mpmi_balance *balance) {
+  switch (balance->settings->desc.linear_solver) {
+  case MPM_SOLVER_CG:
+  case MPM_SOLVER_GMRES:
+  case MPM_SOLVER_MULTIGRID_CG:
+    return ": raise linear_max_iterations, or take MPM_SOLVER_AUTO, which ends with a factor where there is "
+           "room for one";
+  default:
+    return "";
+  }
+}
+
+/* The linear solver names no place where it has failed: it is told where the balance is worst. */
+static mpm_status tell_not_solved(mpmi_balance *balance, mpm_status status) {
+  const mpmi_failure *failure = &balance->step->failure;
+  double share;
+  const mpm_status lost = find_worst(balance, &share);
+  if (lost) return lost;
+  if (failure->node < 0) return status;
+  return mpmi_fail(balance->settings->context, status,
+                   "%s; %.0f %% of what is out of balance is at node %lld beside particle %lld of set %d%s",
+                   mpm_last_error(balance->settings->context), 100.0 * sqrt(share), (long long)failure->node,
+                   (long long)failure->particle, (int)failure->set,
+                   status == MPM_NOT_CONVERGED ? advice_on_solver(balance) : "");
+}
+
 mpm_status mpmi_tell_unsolved(mpmi_balance *balance, mpm_status status, int64_t node) {
   const mpmi_matrix *A = &balance->newton->matrix;
   const mpmi_failure *failure = &balance->step->failure;
+  if (node < 0 && (status == MPM_NOT_CONVERGED || status == MPM_SINGULAR))
+    return tell_not_solved(balance, status);
   balance->step->failure.node = node;
   if (node >= 0) {
     int64_t row = 0;

@@ -170,6 +170,56 @@ START_TEST(too_few_iterations) {
 END_TEST
 
 /* Near its end the iteration is told from one that goes nowhere. */
+/* Conjugate gradients that end early, or meet a matrix that is not for them, name the place of the worst
+ * balance; MPM_SOLVER_AUTO takes a factor then. */
+START_TEST(linear_solver_in_trouble) {
+  block b;
+  open_block(&b, 0);
+  b.desc.stepper.linear_solver = MPM_SOLVER_CG;
+  b.desc.stepper.linear_max_iterations = 3;
+  configure(&b);
+  mpm_step_info info = fails(&b, MPM_NOT_CONVERGED, "after 3 iterations the residual is ");
+  ck_assert_ptr_nonnull(strstr(last_error_of(&b.w), "take MPM_SOLVER_AUTO"));
+  beside(&b, &info);
+  b.desc.stepper.linear_solver = MPM_SOLVER_AUTO;
+  configure(&b);
+  world_step(&b.w, b.dt);
+  b.desc.stepper.linear_solver = MPM_SOLVER_CG;
+  b.desc.stepper.linear_max_iterations = 0;
+  b.desc.stepper.gravity[1] = -20000.0;
+  configure(&b);
+  b.dt = 0.2;
+  info = fails(&b, MPM_SINGULAR, "the matrix is not positive definite: use MPM_SOLVER_LDLT");
+  ck_assert_ptr_nonnull(strstr(last_error_of(&b.w), "of what is out of balance is at node"));
+  beside(&b, &info);
+  world_close(&b.w);
+}
+END_TEST
+
+/* On the linear basis shorter quasi-static steps need not help. */
+START_TEST(steps_of_the_linear_basis) {
+  for (int32_t lagrangian = 0; lagrangian < 2; ++lagrangian) {
+    world w;
+    world_desc desc = implicit_default(2, 8, 0.1, implicit_basis(0));
+    desc.grid.basis = MPM_LINEAR;
+    desc.grid.total_lagrangian = lagrangian;
+    desc.stepper.quasi_static = 1;
+    desc.stepper.gravity[1] = -20.0;
+    desc.stepper.newton_max_iterations = 1;
+    mpm_particles *set = world_open(&w, &desc);
+    implicit_block(&w, set, 0.0, 0.4, NULL);
+    ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FIXED, 0.0));
+    ck_refused(&w, mpm_step(w.stepper, 0.02, NULL), MPM_NOT_CONVERGED,
+               lagrangian ? ": use a smaller dt, or mpm_advance" : "total_lagrangian = 1 or a smooth basis");
+    mpm_advance_desc go = advance_desc(0.02);
+    go.max_cuts = 1;
+    ck_refused(&w, mpm_advance(w.stepper, &go, NULL), MPM_NOT_CONVERGED,
+               lagrangian ? ": smaller steps were tried" : "take total_lagrangian = 1, or a smooth basis");
+    world_close(&w);
+  }
+}
+END_TEST
+
 START_TEST(one_iteration_less) {
   block b;
   open_block(&b, 1);
@@ -373,7 +423,8 @@ START_TEST(host_solver) {
   fails(&b, MPM_NONFINITE, "not finite");
   own.nan = 0;
   own.wrong = 1;
-  fails(&b, MPM_NOT_CONVERGED, "");
+  const mpm_step_info far = fails(&b, MPM_NOT_CONVERGED, "of what is out of balance is at node");
+  beside(&b, &far);
   own.wrong = own.calls = 0;
   const mpm_step_info info = world_step(&b.w, b.dt);
   world_step(&same.w, same.dt);
@@ -613,6 +664,8 @@ TCase *implicit_failures_case(void) {
   tcase_add_test(tests, free_body);
   tcase_add_test(tests, free_rigid_body);
   tcase_add_test(tests, too_few_iterations);
+  tcase_add_test(tests, linear_solver_in_trouble);
+  tcase_add_test(tests, steps_of_the_linear_basis);
   tcase_add_test(tests, one_iteration_less);
   tcase_add_test(tests, inverted);
   tcase_add_test(tests, law_in_trouble);
