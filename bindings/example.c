@@ -45,6 +45,7 @@ int main(void) {
   mpm_stepper_desc options;
   mpm_stepper_desc_init(&options, sizeof options);
   options.scheme = MPM_MUSL;
+  options.projected_positions = 1;
 
   int failed = 1;
   if (mpm_grid_create(context, &box, &grid) ||

@@ -45,7 +45,7 @@ for language in "$@"; do
     echo "newcomer.sh: $language: failed" >&2
     exit 1
   }
-  grep -q 1155f0f2cc2b9af8 "$folder/$language.log" || { tail -5 "$folder/$language.log" >&2; echo "newcomer.sh: $language: another hash" >&2; exit 1; }
+  grep -q 87de2815a6d3f4bc "$folder/$language.log" || { tail -5 "$folder/$language.log" >&2; echo "newcomer.sh: $language: another hash" >&2; exit 1; }
   echo "$language: as its README says, in $((SECONDS - start)) s"
   rm -rf "$root"
 done

@@ -27,6 +27,7 @@ static class Example {
       };
       var options = StepperDesc.Default();
       options.scheme = MPM_MUSL;
+      options.projected_positions = 1;
       using (var left = disk(0.2, 0.5))
       using (var right = disk(0.8, -0.5))
       using (var stepper = new Stepper(context, grid, options)) {

@@ -53,6 +53,7 @@ program example
   right = disk(0.8d0, -0.5d0)
   call mpm_init(options)
   options%scheme = MPM_MUSL
+  options%projected_positions = 1
   call check(mpm_stepper_create(context, grid, options, stepper))
   call check(mpm_stepper_add(stepper, left))
   call check(mpm_stepper_add(stepper, right))

@@ -15,7 +15,7 @@ function disk(centre, velocity) {
   return set;
 }
 const disks = [disk(0.2, 0.5), disk(0.8, -0.5)];
-const stepper = context.stepper(grid, { scheme: C.MPM_MUSL });
+const stepper = context.stepper(grid, { scheme: C.MPM_MUSL, projected_positions: 1 });
 for (const set of disks) stepper.add(set);
 
 // Bends the way of particles: the force is 0.05 x downwards per mass.

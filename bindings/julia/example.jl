@@ -55,6 +55,7 @@ function main()
 
     options = ready(mpm_stepper_desc)
     options.scheme = MPM_MUSL
+    options.projected_positions = 1
     stepper_out = Ref{Ptr{mpm_stepper}}(C_NULL)
     check(context, mpm_stepper_create(context, grid, options, stepper_out))
     stepper = stepper_out[]

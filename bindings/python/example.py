@@ -13,7 +13,7 @@ left = context.particles(grid, jelly).fill_ball((0.2, 0.2), 0.15)
 right = context.particles(grid, jelly).fill_ball((0.8, 0.8), 0.15)
 left["velocity"] = 0.5
 right["velocity"] = -0.5
-stepper = context.stepper(grid, left, right, scheme=mpm.MUSL)
+stepper = context.stepper(grid, left, right, scheme=mpm.MUSL, projected_positions=1)
 stepper.set_force(pull)
 for _ in range(400):
     stepper.step(2e-3)

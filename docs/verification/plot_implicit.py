@@ -188,7 +188,7 @@ def own_weight():
     figure, ax = axes(2)
     data = read("own_weight")
     kinds = ((QUADRATIC, 4, 3, 0, "quadratic"), (CUBIC, 4, 3, 0, "cubic"), (GIMP, 4, 3, 0, "GIMP"), (UGIMP, 4, 3, 0, "uGIMP"),
-             (LINEAR, 8, 4, 0, "linear, half the cells"), (LINEAR, 4, 2, 1, "linear, total Lagrangian"))
+             (LINEAR, 8, 4, 0, "linear, cells of half the size"), (LINEAR, 4, 2, 1, "linear, total Lagrangian"))
     for panel, (beam, tip) in zip(ax, BEAMS):
         for i, (basis, cells, per_cell, lagrangian, name) in enumerate(kinds):
             for steps, mark in ((10, "o"), (20, "s"), (40, "^"), (80, "-")):
@@ -221,17 +221,17 @@ def own_weight_drift():
                 error.append(100 * math.hypot(at["x"][-1] - tip[0], at["y"][-1] - tip[1]) / math.hypot(*tip))
             panel.plot(steps, error, line + mark, fillstyle="none", linewidth=1, label=name if mark == "o" else None)
 
-    still, moving = (10, 20, 40, 80), (10, 40, 160)
+    still, short, moving = (10, 20, 40, 80), (10, 20, 40, 80, 320), (10, 40, 160)
     for i, (basis, name) in enumerate(((QUADRATIC, "quadratic"), (CUBIC, "cubic"), (GIMP, "GIMP"), (UGIMP, "uGIMP"))):
         for per_cell, style in ((2, ":"), (3, "--"), (4, "-")):
             draw(ax[0], still, basis, 4, per_cell, 0, 0, f"C{i}{style}", f"{name}, {per_cell} x {per_cell}")
     for i, (per_cell, lagrangian) in enumerate(((2, 0), (3, 0), (4, 0), (2, 1), (3, 1))):
-        draw(ax[1], still, LINEAR, 8, per_cell, lagrangian, 0, f"C{i}" + "-:"[lagrangian],
+        draw(ax[1], still if lagrangian else short, LINEAR, 8, per_cell, lagrangian, 0, f"C{i}" + "-:"[lagrangian],
              f"{'total Lagrangian' if lagrangian else 'updated'}, {per_cell} x {per_cell}")
     for i, (basis, name) in enumerate(((QUADRATIC, "quadratic"), (CUBIC, "cubic"), (GIMP, "GIMP"))):
         for per_cell, style in ((2, ":"), (3, "--")):
             draw(ax[2], moving, basis, 4, per_cell, 0, 1, f"C{i}{style}", f"{name}, {per_cell} x {per_cell}")
-    for panel, steps, title in zip(ax, (still, still, moving), ("quasi-static, smooth bases", "quasi-static, linear, 8 cells deep",
+    for panel, steps, title in zip(ax, (still, short, moving), ("quasi-static, smooth bases", "quasi-static, linear, 8 cells deep",
                                                                "in slow motion")):
         panel.set_xscale("log")
         ticks(panel, steps)

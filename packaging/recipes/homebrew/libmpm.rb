@@ -18,6 +18,6 @@ class Libmpm < Formula
   test do
     flags = shell_output("pkgconf --cflags --libs mpm").split
     system ENV.cc, "-std=c11", pkgshare/"example.c", *flags, "-o", "example"
-    assert_match "1155f0f2cc2b9af8", shell_output("./example")
+    assert_match "87de2815a6d3f4bc", shell_output("./example")
   end
 end

@@ -16,7 +16,7 @@ fn main() -> Result<(), mpm::Error> {
         Ok(set)
     };
 
-    let mut stepper = Stepper::new(&grid, &StepperDesc { scheme: MPM_MUSL, ..Default::default() })?;
+    let mut stepper = Stepper::new(&grid, &StepperDesc { scheme: MPM_MUSL, projected_positions: 1, ..Default::default() })?;
     let left = stepper.add(disk(0.2, 0.5)?)?;
     let right = stepper.add(disk(0.8, -0.5)?)?;
     // bends the way of particles: the force is 0.05 x downwards per mass
