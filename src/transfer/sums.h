@@ -16,9 +16,9 @@ typedef struct mpmi_sums_job {
   int32_t what;
   int64_t ld; /* of wave_speed ... */
   const double *x[3], *v[3], *mass, *initial_volume;
-  const double *wave_speed, *energy; /* [ld] of the batch */
+  const double *wave_speed, *energy; /* [ld] of the batch; a wave_speed below 0 is told of as not finite */
   const double *kinematic_viscosity; /* the same, or NULL: there is none */
-  int32_t squared;                   /* 1: wave_speed has the squares of the speeds; none is negative */
+  int32_t squared;                   /* 1: wave_speed has the squares of the speeds */
   const double *affine[9];           /* C of APIC for its energy and angular momentum, or NULL */
   const double *force[3];            /* external force beside gravity, or NULL */
   const double *x_old[3];            /* for the work over the step; NULL: there is none */

@@ -64,19 +64,27 @@ static mpm_material *add_law(verify_world *w, int32_t law) {
   return *out;
 }
 
-static void open_beam(beam *b, double g, int32_t law) {
-  const double h = depth / 4.0;
+static void describe(beam *b, double h, int64_t columns, int64_t rows) {
   b->setup = verify_defaults(2, 1, h);
-  b->setup.grid.cells[0] = 34;
-  b->setup.grid.cells[1] = 48;
+  b->setup.grid.cells[0] = columns;
+  b->setup.grid.cells[1] = rows;
   b->setup.stepper.scheme = MPM_NEWMARK;
   b->setup.stepper.quasi_static = 1;
-  verify_open(&b->w, &b->setup);
-  const double lower[] = {0.0, 40.0 * h}, upper[] = {length, 44.0 * h};
-  verify_fill_box(&b->w, verify_set(&b->w, add_law(&b->w, law)), lower, upper, 2);
+}
+
+/* Fills a beam, which is held at the left and weighs g. */
+static void hang(beam *b, mpm_material *law, const double *lower, const double *upper, double g) {
+  verify_fill_box(&b->w, verify_set(&b->w, law), lower, upper, 2);
   verify_ok(&b->w, mpm_stepper_set_wall(b->w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
   b->weight = (load){g, 1.0};
   verify_ok(&b->w, mpm_stepper_set_acceleration(b->w.stepper, loading_weigh, &b->weight));
+}
+
+static void open_beam(beam *b, double g, int32_t law) {
+  const double h = depth / 4.0, lower[] = {0.0, 40.0 * h}, upper[] = {length, 44.0 * h};
+  describe(b, h, 34, 48);
+  verify_open(&b->w, &b->setup);
+  hang(b, add_law(&b->w, law), lower, upper, g);
 }
 
 static void change(beam *b, int32_t iterations) {
@@ -197,21 +205,13 @@ static void sink(void) {
   const char *name = "short steps of the linear basis";
   const int32_t steps = 640;
   for (int32_t lagrangian = 0; lagrangian < 2; ++lagrangian) {
-    const double h = 0.25 / 8.0, below = 52.0 * h;
-    verify_setup setup = verify_defaults(2, 1, h);
-    setup.grid.basis = MPM_LINEAR;
-    setup.grid.total_lagrangian = lagrangian;
-    setup.grid.cells[0] = 83;
-    setup.grid.cells[1] = 70;
-    setup.stepper.scheme = MPM_NEWMARK;
-    setup.stepper.quasi_static = 1;
-    beam b = {.setup = setup};
-    verify_open(&b.w, &setup);
-    verify_fill_box(&b.w, verify_set(&b.w, verify_elastic(&b.w, "neo_hookean", 1.5e6, 0.25, density)),
-                    (const double[]){0.0, below}, (const double[]){2.4, below + 0.25}, 2);
-    verify_ok(&b.w, mpm_stepper_set_wall(b.w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
-    b.weight = (load){2.2, 1.0};
-    verify_ok(&b.w, mpm_stepper_set_acceleration(b.w.stepper, loading_weigh, &b.weight));
+    const double h = 0.25 / 8.0, lower[] = {0.0, 52.0 * h}, upper[] = {2.4, 60.0 * h};
+    beam b;
+    describe(&b, h, 83, 70);
+    b.setup.grid.basis = MPM_LINEAR;
+    b.setup.grid.total_lagrangian = lagrangian;
+    verify_open(&b.w, &b.setup);
+    hang(&b, verify_elastic(&b.w, "neo_hookean", 1.5e6, 0.25, density), lower, upper, 2.2);
     mpm_step_info info = {.struct_size = sizeof info};
     int32_t done = 0;
     mpm_status status = MPM_OK;
