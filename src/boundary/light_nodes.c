@@ -42,34 +42,57 @@ static int32_t direction_of(const mpmi_bound *bound, int32_t i, int32_t *by) {
   return (by[0] != 0) + (by[1] != 0) + (by[2] != 0);
 }
 
+/* Returns 1 for a node in the plane of a wall that holds a component of velocities there, or any with c = -1;
+ * face: of that wall. */
+static int32_t is_held(const mpmi_bound *bound, int64_t slot, int32_t face, int32_t c) {
+  const mpmi_settings *settings = bound->step->settings;
+  const int32_t k = face / 2, holds = mpmi_wall_kind_of(settings->wall[face].kind)->holds;
+  int64_t index[3];
+  if (holds == MPMI_HOLDS_NOTHING || settings->grid->desc.periodic[k]) return 0;
+  mpmi_blocks_index(&bound->step->layout->blocks, slot, index);
+  if (index[k] != mpmi_face_node(settings->grid, face)) return 0;
+  return c < 0 || c == k || holds == MPMI_HOLDS_ALL;
+}
+
+/* Returns the mass of a node with that of the mirror image behind walls, in whose planes a node has half of
+ * it: a body on a plane of symmetry moves as one half of the whole. */
+static double whole_mass(const mpmi_bound *bound, int64_t slot) {
+  double mass = mpmi_moving_mass(bound, slot);
+  for (int32_t face = 0; face < 2 * bound->dim; ++face)
+    if (is_held(bound, slot, face, -1)) mass *= 2.0;
+  return mass;
+}
+
 static int32_t is_light(const mpmi_bound *bound, int64_t slot) {
-  const double mass = mpmi_moving_mass(bound, slot);
+  const double mass = whole_mass(bound, slot), share = bound->step->layout->light_share;
   if (mass > bound->step->layout->light_cut) return 0;
   for (int32_t i = 0; i < 27; ++i) {
     int32_t by[3];
     const int64_t near = direction_of(bound, i, by) ? beside(bound, slot, by, 1) : -1;
-    if (near >= 0 && mass <= MPMI_LIGHT_SHARE * mpmi_moving_mass(bound, near)) return 1;
+    if (near >= 0 && mass <= share * whole_mass(bound, near)) return 1;
   }
   return 0;
 }
 
 /* Returns 1 for a node that one of this mass may go with. */
-static int32_t leads(const mpmi_bound *bound, int64_t slot, double mass) {
-  return slot >= 0 && mass <= MPMI_LIGHT_SHARE * mpmi_moving_mass(bound, slot) && !is_light(bound, slot);
+static int32_t leads(const mpmi_bound *bound, int64_t slot, double mass, double share) {
+  return slot >= 0 && mass <= share * whole_mass(bound, slot) && !is_light(bound, slot);
 }
 
-/* Adds the lines along so many axes on which the next node is heavy, and with it, or not, the one behind. */
+/* Adds the lines along so many axes on which the next node is heavy, and with it, or not, the one behind.
+ * Without it the force is moved aside, which turns the body: that is left to nodes with hardly any. */
 static void add_lines(const mpmi_bound *bound, int64_t slot, int32_t axes, leaders *found) {
-  const double light = mpmi_moving_mass(bound, slot);
+  const double light = whole_mass(bound, slot);
+  const double share = found->lone ? MPMI_LEAST_LIGHT_SHARE : bound->step->layout->light_share;
   double sum = 0.0;
   for (int32_t i = 0; i < 27; ++i) {
     int32_t by[3];
     if (direction_of(bound, i, by) != axes) continue;
     const int64_t near = beside(bound, slot, by, 1);
-    if (!leads(bound, near, light)) continue;
+    if (!leads(bound, near, light, share)) continue;
     const int64_t far = beside(bound, slot, by, 2);
-    if (found->lone != (far == near || !leads(bound, far, light))) continue;
-    const double mass = mpmi_moving_mass(bound, near);
+    if (found->lone != (far == near || !leads(bound, far, light, share))) continue;
+    const double mass = whole_mass(bound, near);
     sum += mass;
     found->slot[found->count] = near;
     found->share[found->count++] = found->lone ? mass : 2.0 * mass;
@@ -101,11 +124,15 @@ static void give(mpmi_bound *bound, const leaders *to, int32_t c, double momentu
   }
 }
 
-/* Returns a component of what the leaders of a node have of a vector. */
-static double of_leaders(const leaders *of, double *(*vector)(const mpmi_nodal *, int64_t),
-                         const mpmi_nodal *nodes, int32_t c) {
+/* Returns a component of what the leaders of a node have of a vector: none where a wall will hold it. */
+static double of_leaders(const mpmi_bound *bound, const leaders *of,
+                         double *(*vector)(const mpmi_nodal *, int64_t), int32_t c) {
   double sum = 0.0;
-  for (int32_t k = 0; k < of->count; ++k) sum += of->share[k] * vector(nodes, of->slot[k])[c];
+  for (int32_t k = 0; k < of->count; ++k) {
+    int32_t held = 0;
+    for (int32_t face = 0; face < 2 * bound->dim; ++face) held |= is_held(bound, of->slot[k], face, c);
+    if (!held) sum += of->share[k] * vector(bound->values, of->slot[k])[c];
+  }
   return sum;
 }
 
@@ -135,8 +162,7 @@ static void over_light_nodes(mpmi_bound *bound, light_fn fn) {
 }
 
 static void look_first(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
-  for (int32_t c = 0; c < bound->dim; ++c)
-    node->first_gain[c] = of_leaders(with, mpmi_increment, bound->values, c);
+  for (int32_t c = 0; c < bound->dim; ++c) node->first_gain[c] = of_leaders(bound, with, mpmi_increment, c);
 }
 
 static void give_force(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
@@ -150,8 +176,8 @@ static void look_again(mpmi_bound *bound, mpmi_light_node *node, const leaders *
   const int32_t both = mpmi_has_increments(bound->values);
   const double *own = mpmi_velocity(bound->values, node->slot);
   for (int32_t c = 0; c < bound->dim; ++c) {
-    node->gain[c] = both ? of_leaders(with, mpmi_increment, bound->values, c) : 0.0;
-    node->before[c] = with->lone ? own[c] : of_leaders(with, mpmi_velocity, bound->values, c) - node->gain[c];
+    node->gain[c] = both ? of_leaders(bound, with, mpmi_increment, c) : 0.0;
+    node->before[c] = with->lone ? own[c] : of_leaders(bound, with, mpmi_velocity, c) - node->gain[c];
   }
 }
 

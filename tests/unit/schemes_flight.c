@@ -146,13 +146,6 @@ START_TEST(flight_among) {
 }
 END_TEST
 
-/* Returns 1 where a step magnifies rounding by more than 1 while particles pass nodes slowly (theory 7.1). */
-static int32_t loses_slow_bodies(const basis_option *basis, const stepping *how, const transfer_option *by) {
-  const int32_t affine = by->transfer == MPM_APIC || by->transfer == MPM_TPIC || by->transfer == MPM_TFLIP ||
-                         by->transfer == MPM_AFLIP || by->transfer == MPM_APIC_MLS;
-  return basis->basis == MPM_LINEAR && (how->scheme == MPM_USL || affine);
-}
-
 /* A block that goes a thousandth of a cell by each step of 0.4 of the stable one: its particles are next to
  * nodes for hundreds of steps. */
 static void fly_slowly(const basis_option *basis, const stepping *how, const transfer_option *by,
@@ -184,7 +177,6 @@ START_TEST(slow_flight) {
   for (int32_t s = 0; s < WAYS; ++s)
     for (int32_t t = 0; t < TRANSFERS && ways[s].scheme != MPM_NEWMARK; ++t) {
       const transfer_option *by = &transfer_options[t];
-      if (loses_slow_bodies(basis, &ways[s], by)) continue;
       if (by->transfer == MPM_APIC_MLS && !has_affine_steps(basis)) continue;
       for (int32_t k = 0; k < 3; ++k) fly_slowly(basis, &ways[s], by, places[k]);
     }
