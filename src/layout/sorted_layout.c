@@ -163,8 +163,8 @@ void mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings) {
 }
 
 /* Returns the share of mass with which a node goes with others. A node of the share w of a layer of particles
- * swings with the frequency c / (h sqrt(w)), which a step bears down to w = courant^2 / 4. Where particles are
- * strained by the velocities that they have given, MUSL and USF, a light one hardly counts, unless their
+ * swings with the frequency c / (h sqrt(w)), which a step bears down to w = courant^2 / 4. Where particles
+ * are strained by the velocities that they have given, MUSL and USF, a light one hardly counts, unless their
  * matrices hand its gradient back. */
 static double light_share(const mpmi_settings *settings, double courant) {
   const int32_t throws = settings->desc.scheme == MPM_USL || mpmi_is_affine(settings);
