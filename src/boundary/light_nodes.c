@@ -212,7 +212,7 @@ static void go_alone(const mpmi_bound *bound, int64_t slot) {
 static int64_t to_be_led(const mpmi_bound *bound, int64_t listed) {
   const int64_t slot = listed_by(bound, listed);
   if (slot < 0 || mpmi_moving_mass(bound, slot) > bound->step->layout->light_cut) return -1;
-  if (leaders_of(bound, slot).count) return slot;
+  if (is_light(bound, slot) && leaders_of(bound, slot).count) return slot;
   go_alone(bound, slot);
   return -1;
 }
