@@ -10,11 +10,19 @@
 /* The next two nodes on a line, for up to 12 lines. */
 enum { MOST_LEADERS = 24 };
 
+/* What nodes that share leaders give each other's is given back in the second round. The margin of parts,
+ * mpmi_layout_create, is for so many. */
+enum { ROUNDS = 2 };
+
+/* Up to this share of mass a node goes with others where no line has its second node. */
+#define LONE_SHARE 1e-5
+
 /* The nodes that a light one goes with. Their coefficients have the sum 1. */
 typedef struct leaders {
   int32_t count, lone; /* lone: no line has its second node */
   int64_t slot[MOST_LEADERS];
   double share[MOST_LEADERS];
+  int32_t held[MOST_LEADERS]; /* bits of the components that a wall holds */
 } leaders;
 
 /* Returns the node that moves for the one in a slot: itself, or the master of an image; -1 where there is
@@ -42,16 +50,20 @@ static int32_t direction_of(const mpmi_bound *bound, int32_t i, int32_t *by) {
   return (by[0] != 0) + (by[1] != 0) + (by[2] != 0);
 }
 
-/* Returns 1 for a node in the plane of a wall that holds a component of velocities there, or any with c = -1;
- * face: of that wall. */
-static int32_t is_held(const mpmi_bound *bound, int64_t slot, int32_t face, int32_t c) {
-  const mpmi_settings *settings = bound->step->settings;
-  const int32_t k = face / 2, holds = mpmi_wall_kind_of(settings->wall[face].kind)->holds;
+/* Returns 1 for a node in the plane of a face, where a wall is. */
+static int32_t is_in_plane(const mpmi_bound *bound, int64_t slot, int32_t face) {
+  const mpm_grid *grid = bound->step->settings->grid;
   int64_t index[3];
-  if (holds == MPMI_HOLDS_NOTHING || settings->grid->desc.periodic[k]) return 0;
+  if (grid->desc.periodic[face / 2]) return 0;
   mpmi_blocks_index(&bound->step->layout->blocks, slot, index);
-  if (index[k] != mpmi_face_node(settings->grid, face)) return 0;
-  return c < 0 || c == k || holds == MPMI_HOLDS_ALL;
+  return index[face / 2] == mpmi_face_node(grid, face);
+}
+
+/* Returns the components of velocity, as bits, that a wall holds at a node. */
+static int32_t held_by(const mpmi_bound *bound, int64_t slot, int32_t face) {
+  const int32_t holds = mpmi_wall_kind_of(bound->step->settings->wall[face].kind)->holds;
+  if (holds == MPMI_HOLDS_NOTHING || !is_in_plane(bound, slot, face)) return 0;
+  return holds == MPMI_HOLDS_ALL ? 7 : 1 << face / 2;
 }
 
 /* Returns the mass of a node with that of the mirror image behind walls, in whose planes a node has half of
@@ -59,17 +71,17 @@ static int32_t is_held(const mpmi_bound *bound, int64_t slot, int32_t face, int3
 static double whole_mass(const mpmi_bound *bound, int64_t slot) {
   double mass = mpmi_moving_mass(bound, slot);
   for (int32_t face = 0; face < 2 * bound->dim; ++face)
-    if (is_held(bound, slot, face, -1)) mass *= 2.0;
+    if (held_by(bound, slot, face)) mass *= 2.0;
   return mass;
 }
 
 static int32_t is_light(const mpmi_bound *bound, int64_t slot) {
-  const double mass = whole_mass(bound, slot), share = bound->step->layout->light_share;
+  const double mass = whole_mass(bound, slot);
   if (mass > bound->step->layout->light_cut) return 0;
   for (int32_t i = 0; i < 27; ++i) {
     int32_t by[3];
     const int64_t near = direction_of(bound, i, by) ? beside(bound, slot, by, 1) : -1;
-    if (near >= 0 && mass <= share * whole_mass(bound, near)) return 1;
+    if (near >= 0 && mass <= MPMI_LIGHT_SHARE * whole_mass(bound, near)) return 1;
   }
   return 0;
 }
@@ -83,7 +95,7 @@ static int32_t leads(const mpmi_bound *bound, int64_t slot, double mass, double 
  * Without it the force is moved aside, which turns the body: that is left to nodes with hardly any. */
 static void add_lines(const mpmi_bound *bound, int64_t slot, int32_t axes, leaders *found) {
   const double light = whole_mass(bound, slot);
-  const double share = found->lone ? MPMI_LEAST_LIGHT_SHARE : bound->step->layout->light_share;
+  const double share = found->lone ? LONE_SHARE : MPMI_LIGHT_SHARE;
   double sum = 0.0;
   for (int32_t i = 0; i < 27; ++i) {
     int32_t by[3];
@@ -100,14 +112,18 @@ static void add_lines(const mpmi_bound *bound, int64_t slot, int32_t axes, leade
     found->slot[found->count] = far;
     found->share[found->count++] = -mass;
   }
-  for (int32_t k = 0; k < found->count; ++k) found->share[k] /= sum;
+  for (int32_t k = 0; k < found->count; ++k) {
+    found->share[k] /= sum;
+    for (int32_t face = 0; face < 2 * bound->dim; ++face)
+      found->held[k] |= held_by(bound, found->slot[k], face);
+  }
 }
 
 /* Finds the lines from a light node: along axes, and where there are none across the edges of a cell, then
  * through its corners; without a second node only where no line has one. They count by the mass of the next
  * node. */
 static leaders leaders_of(const mpmi_bound *bound, int64_t slot) {
-  leaders found = {0, 0, {0}, {0.0}};
+  leaders found = {.count = 0};
   for (found.lone = 0; found.lone < 2; ++found.lone)
     for (int32_t axes = 1; axes <= bound->dim; ++axes) {
       add_lines(bound, slot, axes, &found);
@@ -116,11 +132,11 @@ static leaders leaders_of(const mpmi_bound *bound, int64_t slot) {
   return found;
 }
 
-/* Gives momentum to the leaders of a node. */
-static void give(mpmi_bound *bound, const leaders *to, int32_t c, double momentum, int32_t gained) {
+/* Gives momentum to the leaders of a node; gained: the part of it that counts among their increments. */
+static void give(mpmi_bound *bound, const leaders *to, int32_t c, double momentum, double gained) {
   for (int32_t k = 0; k < to->count; ++k) {
-    const double by = to->share[k] * momentum / mpmi_moving_mass(bound, to->slot[k]);
-    mpmi_shift_node(bound, to->slot[k], c, by, gained ? by : 0.0);
+    const double by = to->share[k] / mpmi_moving_mass(bound, to->slot[k]);
+    mpmi_shift_node(bound, to->slot[k], c, by * momentum, by * gained);
   }
 }
 
@@ -128,11 +144,17 @@ static void give(mpmi_bound *bound, const leaders *to, int32_t c, double momentu
 static double of_leaders(const mpmi_bound *bound, const leaders *of,
                          double *(*vector)(const mpmi_nodal *, int64_t), int32_t c) {
   double sum = 0.0;
-  for (int32_t k = 0; k < of->count; ++k) {
-    int32_t held = 0;
-    for (int32_t face = 0; face < 2 * bound->dim; ++face) held |= is_held(bound, of->slot[k], face, c);
-    if (!held) sum += of->share[k] * vector(bound->values, of->slot[k])[c];
-  }
+  for (int32_t k = 0; k < of->count; ++k)
+    if (!(of->held[k] >> c & 1)) sum += of->share[k] * vector(bound->values, of->slot[k])[c];
+  return sum;
+}
+
+/* Returns how much of a velocity the leaders of a node take on when it gives them its momentum. */
+static double response(const mpmi_bound *bound, const leaders *of, double mass, int32_t c) {
+  double sum = 0.0;
+  for (int32_t k = 0; k < of->count; ++k)
+    if (!(of->held[k] >> c & 1))
+      sum += mass * of->share[k] * of->share[k] / mpmi_moving_mass(bound, of->slot[k]);
   return sum;
 }
 
@@ -161,23 +183,56 @@ static void over_light_nodes(mpmi_bound *bound, light_fn fn) {
   }
 }
 
-static void look_first(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
-  for (int32_t c = 0; c < bound->dim; ++c) node->first_gain[c] = of_leaders(bound, with, mpmi_increment, c);
-}
-
-static void give_force(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
-  const double mass = mpmi_moving_mass(bound, node->slot);
-  const double *dv = mpmi_increment(bound->values, node->slot);
-  for (int32_t c = 0; c < bound->dim; ++c) give(bound, with, c, mass * (dv[c] - node->first_gain[c]), 1);
-}
-
-/* Without a line for its velocity a node keeps its own. */
-static void look_again(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
-  const int32_t both = mpmi_has_increments(bound->values);
-  const double *own = mpmi_velocity(bound->values, node->slot);
+static void start(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
+  (void)with;
   for (int32_t c = 0; c < bound->dim; ++c) {
-    node->gain[c] = both ? of_leaders(bound, with, mpmi_increment, c) : 0.0;
-    node->before[c] = with->lone ? own[c] : of_leaders(bound, with, mpmi_velocity, c) - node->gain[c];
+    node->before[c] = mpmi_velocity(bound->values, node->slot)[c];
+    node->gain[c] = mpmi_increment_of(bound, node->slot, c);
+  }
+}
+
+/* Returns 1 where a node goes with its own force into a wall that bears. */
+static int32_t is_pressed(const mpmi_bound *bound, const mpmi_light_node *node, int32_t face) {
+  const int32_t k = face / 2;
+  if (mpmi_wall_kind_of(bound->step->settings->wall[face].kind)->rubs == MPMI_RUBS_NOT) return 0;
+  return (face % 2 ? 1.0 : -1.0) * (node->before[k] + node->gain[k]) > 0.0 &&
+         is_in_plane(bound, node->slot, face);
+}
+
+/* Returns the components, as bits, whose force a wall takes, so that leaders must not. */
+static int32_t borne_of(const mpmi_bound *bound, const mpmi_light_node *node) {
+  int32_t borne = 0;
+  for (int32_t face = 0; face < 2 * bound->dim; ++face) {
+    borne |= held_by(bound, node->slot, face);
+    if (!is_pressed(bound, node, face)) continue;
+    borne |= bound->step->settings->wall[face].friction > 0.0 ? 7 : 1 << face / 2;
+  }
+  return borne;
+}
+
+/* Without a line for its velocity a node keeps its own, and all where a wall bears it. */
+static void look(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
+  const int32_t both = mpmi_has_increments(bound->values), borne = borne_of(bound, node);
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    const double before = node->before[c], gain = node->gain[c];
+    const double led = of_leaders(bound, with, mpmi_velocity, c);
+    const double led_gain = both ? of_leaders(bound, with, mpmi_increment, c) : 0.0;
+    node->led_gain[c] = borne >> c & 1 ? gain : led_gain;
+    node->led_before[c] = borne >> c & 1 || with->lone ? before : led - led_gain;
+  }
+}
+
+/* Gives the leaders so much of the momentum that a node has apart from them that it goes with them after
+ * that, where no other gives to them, too. */
+static void give_rest(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
+  const double mass = mpmi_moving_mass(bound, node->slot);
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    const double part = 1.0 / (1.0 + response(bound, with, mass, c));
+    const double before = part * (node->before[c] - node->led_before[c]);
+    const double gain = part * (node->gain[c] - node->led_gain[c]);
+    give(bound, with, c, mass * (before + gain), mass * gain);
+    node->before[c] -= before;
+    node->gain[c] -= gain;
   }
 }
 
@@ -190,16 +245,10 @@ static void set(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, dou
   if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, slot)[c] = increment;
 }
 
-/* Lets a light node move with its leaders. The momentum that its mass gains by that is taken from them. */
 static void follow(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
-  const double mass = mpmi_moving_mass(bound, node->slot);
-  const int32_t both = mpmi_has_increments(bound->values);
-  for (int32_t c = 0; c < bound->dim; ++c) {
-    const double own = mpmi_velocity(bound->values, node->slot)[c];
-    give(bound, with, c, mass * (own - node->before[c]), 0);
+  (void)with;
+  for (int32_t c = 0; c < bound->dim; ++c)
     set(bound, node->slot, c, node->before[c] + node->gain[c], node->gain[c]);
-    if (both) give(bound, with, c, mass * (node->first_gain[c] - node->gain[c]), 1);
-  }
 }
 
 /* A node that is not light after all, or that none leads, moves by its own force. */
@@ -221,10 +270,10 @@ static int64_t to_be_led(const mpmi_bound *bound, int64_t listed) {
 void mpmi_light_nodes_lead(mpmi_bound *bound) {
   for (int64_t n = 0; n < bound->nodes->light_count; ++n)
     bound->nodes->light[n].slot = to_be_led(bound, bound->nodes->light[n].slot);
-  if (mpmi_has_increments(bound->values)) {
-    over_light_nodes(bound, look_first);
-    over_light_nodes(bound, give_force);
+  over_light_nodes(bound, start);
+  for (int32_t round = 0; round < ROUNDS; ++round) {
+    over_light_nodes(bound, look);
+    over_light_nodes(bound, give_rest);
   }
-  over_light_nodes(bound, look_again);
   over_light_nodes(bound, follow);
 }

@@ -74,11 +74,11 @@ typedef struct mpmi_prescription {
   int64_t sums_capacity, block_capacity, part_capacity;
 } mpmi_prescription;
 
-/* A node that is so light that it goes with others (boundary/light_nodes.c), and what these do: its velocity
- * before the forces, its increment without and with its own force. */
+/* A node that is so light that it goes with others (boundary/light_nodes.c): its velocity before the forces
+ * and its increment, and those of its leaders. */
 typedef struct mpmi_light_node {
   int64_t slot; /* its own; then that of the node to be led, or -1 */
-  double before[3], first_gain[3], gain[3];
+  double before[3], gain[3], led_before[3], led_gain[3];
 } mpmi_light_node;
 
 /* A node that moves, where a surface prescribes something (boundary/surface_sites.c). The vector is the

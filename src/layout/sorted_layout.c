@@ -162,31 +162,22 @@ void mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings) {
   swap_in_next(layout);
 }
 
-/* Returns the share of mass with which a node goes with others. A node of the share w of a layer of particles
- * swings with the frequency c / (h sqrt(w)), which a step bears down to w = courant^2 / 4. Where particles
- * are strained by the velocities that they have given, MUSL and USF, a light one hardly counts, unless their
- * matrices hand its gradient back. */
-static double light_share(const mpmi_settings *settings, double courant) {
-  const int32_t throws = settings->desc.scheme == MPM_USL || mpmi_is_affine(settings);
-  const double thrown = throws ? 0.25 * courant * courant : 0.0;
-  return fmax(MPMI_LEAST_LIGHT_SHARE, fmin(MPMI_MOST_LIGHT_SHARE, thrown));
-}
-
 /* Finds the mass cut: a node that is lighter is not divided by its mass, and nothing holds it. The lightest
  * that a particle can make is that in the corner of a 3-D cell, 2^-180 of it on the linear basis. There force
- * over mass grows as mass vanishes, and steps that divide by it look among the nodes up to the light cut,
- * which has as many particles side by side as fills put into a cell, for those that must go with others. */
-static void find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings, double courant) {
+ * over mass grows as mass vanishes, and steps that divide by it look among the nodes up to the light cut for
+ * those that must go with others: that is their share of what a cell with three particles along each axis
+ * has. */
+static void find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
+  static const double in_cell[] = {1.0, 3.0, 9.0, 27.0};
   const int32_t divides = settings->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(settings);
-  const double side_by_side = (double)(1 << settings->grid->dim);
   double heaviest = 0.0;
   for (int32_t m = 0; m < layout->member_count; ++m)
     if (layout->member[m].set->count || layout->parts) /* the mass is that of all parts */
       heaviest = fmax(heaviest, layout->member[m].set->mass_max);
   layout->mass_cut = fmax(DBL_MIN, 1e-60 * heaviest); /* the inverse of a lighter one may not be finite */
-  layout->light_share = light_share(settings, courant);
   layout->light_cut = layout->mass_cut;
-  if (divides) layout->light_cut = fmax(layout->mass_cut, layout->light_share * side_by_side * heaviest);
+  if (divides)
+    layout->light_cut = fmax(layout->mass_cut, MPMI_LIGHT_SHARE * in_cell[settings->grid->dim] * heaviest);
 }
 
 mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy) {
@@ -298,10 +289,10 @@ mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings) 
   return layout->parts ? sort_together(layout, settings) : sort_anew(layout, settings, NULL);
 }
 
-mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings, double courant) {
+mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings) {
   mpm_status status = mpmi_layout_sort(layout, settings);
   if (status) return status;
-  find_mass_cut(layout, settings, courant);
+  find_mass_cut(layout, settings);
   if (layout->walls_changed) status = find_ties(layout, settings);
   if (status || !layout->parts) return status;
   return mpmi_share_nodes(layout->parts, &layout->blocks, &layout->constraints, layout->version);

@@ -29,10 +29,8 @@ typedef struct mpmi_worklist {
 /* There is one list of all blocks with particles, and then one for each colour. */
 enum { MPMI_WORKLISTS = 1 + MPMI_COLOURS };
 
-/* A node that has a share of the mass of one beside it, or less, goes with it (boundary/light_nodes.c). That
- * share is the first, and up to the second where the step is so long that its own force would throw it. */
-#define MPMI_LEAST_LIGHT_SHARE 1e-5
-#define MPMI_MOST_LIGHT_SHARE  0.1
+/* A node that has this share of the mass of one beside it, or less, goes with it (boundary/light_nodes.c). */
+#define MPMI_LIGHT_SHARE 0.1
 
 typedef struct mpmi_layout {
   int32_t member_count, member_capacity;
@@ -51,7 +49,6 @@ typedef struct mpmi_layout {
   int64_t wide_domains; /* domains wider than a cell at the last sort (GIMP) */
   double mass_cut;      /* a node that is not heavier takes no force */
   double light_cut;     /* one that is not heavier may have to go with others: at least the mass cut */
-  double light_share;   /* of the mass of one beside it, with which it does */
   int32_t walls_changed;
   mpmi_parts *parts; /* of several parts of a problem this one, or NULL */
 } mpmi_layout;
@@ -96,10 +93,9 @@ static inline const mpm_particles *mpmi_resident_set(const mpmi_layout *layout, 
                                        : &layout->parts->guests[member - layout->member_count].set;
 }
 
-/* Brings the layout up to date for a step that has this share of the time that waves take through a cell:
- * sorts where particles have left their tiles, finds ties where walls have changed. The old layout stays when
- * that fails. */
-mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings, double courant);
+/* Brings the layout up to date: sorts where particles have left their tiles, finds ties where walls have
+ * changed. The old layout stays when that fails. */
+mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings);
 /* Returns 1 where particles have left their tiles or are new. */
 int32_t mpmi_layout_is_moved(const mpmi_layout *layout);
 /* Sorts then. */

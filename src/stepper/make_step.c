@@ -102,7 +102,7 @@ static mpm_status prepare(mpm_stepper *s) {
   status = mpmi_together_refreshed(s, mpmi_members_refresh(&s->layout, settings));
   if (status) return status;
   s->nodes.shown = -1;
-  if ((status = mpmi_layout_prepare(&s->layout, settings, s->step.dt * s->history.sums.rate))) return status;
+  if ((status = mpmi_layout_prepare(&s->layout, settings))) return status;
   if (s->layout.cover_is_old) mpmi_layout_cover(&s->layout);
   if ((status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
       (status = mpmi_workspace_prepare(&s->work, settings, &s->layout)) ||
