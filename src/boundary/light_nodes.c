@@ -6,6 +6,7 @@
 #include "boundary/bound.h"
 
 #include <float.h>
+#include <math.h>
 
 /* The next two nodes on a line, for up to 12 lines. */
 enum { MOST_LEADERS = 24 };
@@ -75,13 +76,21 @@ static double whole_mass(const mpmi_bound *bound, int64_t slot) {
   return mass;
 }
 
+/* Returns the share of the mass of a node beside, up to which one of this body is light. A light material is
+ * no sliver of the heavy one with which it is bonded. */
+static double light_share(const mpmi_bound *bound, int64_t slot) {
+  const mpmi_layout *layout = bound->step->layout;
+  const mpmi_densities *of = &layout->densities[layout->blocks.body[slot / layout->blocks.nodes]];
+  return MPMI_LIGHT_SHARE * (of->least / of->most);
+}
+
 static int32_t is_light(const mpmi_bound *bound, int64_t slot) {
-  const double mass = whole_mass(bound, slot);
+  const double mass = whole_mass(bound, slot), share = light_share(bound, slot);
   if (mass > bound->step->layout->light_cut) return 0;
   for (int32_t i = 0; i < 27; ++i) {
     int32_t by[3];
     const int64_t near = direction_of(bound, i, by) ? beside(bound, slot, by, 1) : -1;
-    if (near >= 0 && mass <= MPMI_LIGHT_SHARE * whole_mass(bound, near)) return 1;
+    if (near >= 0 && mass <= share * whole_mass(bound, near)) return 1;
   }
   return 0;
 }
@@ -95,7 +104,7 @@ static int32_t leads(const mpmi_bound *bound, int64_t slot, double mass, double 
  * Without it the force is moved aside, which turns the body: that is left to nodes with hardly any. */
 static void add_lines(const mpmi_bound *bound, int64_t slot, int32_t axes, leaders *found) {
   const double light = whole_mass(bound, slot);
-  const double share = found->lone ? LONE_SHARE : MPMI_LIGHT_SHARE;
+  const double most = light_share(bound, slot), share = found->lone ? fmin(LONE_SHARE, most) : most;
   double sum = 0.0;
   for (int32_t i = 0; i < 27; ++i) {
     int32_t by[3];

@@ -55,6 +55,7 @@ void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, layout->next_list_memory, layout->next_list_capacity);
   mpmi_free(c, layout->bound_memory, mpmi_bytes((settings->tasks + 1) * MPMI_WORKLISTS, sizeof(int64_t)));
   MPMI_FREE_ARRAY(c, layout->member, layout->member_capacity);
+  MPMI_FREE_ARRAY(c, layout->densities, layout->densities_capacity);
   if (layout->parts) mpmi_guests_free(layout->parts);
   mpmi_parts_destroy(layout->parts);
 }
@@ -162,22 +163,41 @@ void mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings) {
   swap_in_next(layout);
 }
 
+/* Finds what densities bodies have: nodes are not light that have little mass for that of their particles. */
+static mpm_status find_densities(mpmi_layout *layout, const mpmi_settings *settings) {
+  int64_t bodies = 0;
+  for (int32_t m = 0; m < layout->member_count; ++m)
+    if (layout->member[m].body >= bodies) bodies = layout->member[m].body + 1;
+  const mpm_status status =
+      MPMI_RESERVE_MORE(settings->context, layout->densities, layout->densities_capacity, bodies);
+  if (status) return status;
+  for (int64_t body = 0; body < bodies; ++body) layout->densities[body] = (mpmi_densities){DBL_MAX, 0.0};
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    const mpm_particles *set = layout->member[m].set;
+    mpmi_densities *of = &layout->densities[layout->member[m].body];
+    if (!(set->mass_max > 0.0)) continue;
+    of->least = fmin(of->least, set->material->density);
+    of->most = fmax(of->most, set->material->density);
+  }
+  return MPM_OK;
+}
+
 /* Finds the mass cut: a node that is lighter is not divided by its mass, and nothing holds it. The lightest
  * that a particle can make is that in the corner of a 3-D cell, 2^-180 of it on the linear basis. There force
  * over mass grows as mass vanishes, and steps that divide by it look among the nodes up to the light cut for
  * those that must go with others: that is their share of what a cell with three particles along each axis
  * has. */
-static void find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
+static mpm_status find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
   static const double in_cell[] = {1.0, 3.0, 9.0, 27.0};
-  const int32_t divides = settings->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(settings);
   double heaviest = 0.0;
   for (int32_t m = 0; m < layout->member_count; ++m)
     if (layout->member[m].set->count || layout->parts) /* the mass is that of all parts */
       heaviest = fmax(heaviest, layout->member[m].set->mass_max);
   layout->mass_cut = fmax(DBL_MIN, 1e-60 * heaviest); /* the inverse of a lighter one may not be finite */
   layout->light_cut = layout->mass_cut;
-  if (divides)
+  if (settings->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(settings))
     layout->light_cut = fmax(layout->mass_cut, MPMI_LIGHT_SHARE * in_cell[settings->grid->dim] * heaviest);
+  return find_densities(layout, settings);
 }
 
 mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy) {
@@ -292,8 +312,8 @@ mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings) 
 mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings) {
   mpm_status status = mpmi_layout_sort(layout, settings);
   if (status) return status;
-  find_mass_cut(layout, settings);
-  if (layout->walls_changed) status = find_ties(layout, settings);
+  status = find_mass_cut(layout, settings);
+  if (!status && layout->walls_changed) status = find_ties(layout, settings);
   if (status || !layout->parts) return status;
   return mpmi_share_nodes(layout->parts, &layout->blocks, &layout->constraints, layout->version);
 }

@@ -29,8 +29,14 @@ typedef struct mpmi_worklist {
 /* There is one list of all blocks with particles, and then one for each colour. */
 enum { MPMI_WORKLISTS = 1 + MPMI_COLOURS };
 
-/* A node that has this share of the mass of one beside it, or less, goes with it (boundary/light_nodes.c). */
+/* A node that has this share of the mass of one beside it, or less, goes with it (boundary/light_nodes.c), in a
+ * body of one density. */
 #define MPMI_LIGHT_SHARE 0.1
+
+/* The densities of the laws of a body's sets. */
+typedef struct mpmi_densities {
+  double least, most;
+} mpmi_densities;
 
 typedef struct mpmi_layout {
   int32_t member_count, member_capacity;
@@ -46,9 +52,11 @@ typedef struct mpmi_layout {
   int64_t covers;       /* counts how often it was found which nodes are met */
   int32_t cover_is_old; /* find it anew (layout/reached.c) before the next step */
   int64_t sorts;
-  int64_t wide_domains; /* domains wider than a cell at the last sort (GIMP) */
-  double mass_cut;      /* a node that is not heavier takes no force */
-  double light_cut;     /* one that is not heavier may have to go with others: at least the mass cut */
+  int64_t wide_domains;      /* domains wider than a cell at the last sort (GIMP) */
+  double mass_cut;           /* a node that is not heavier takes no force */
+  double light_cut;          /* one that is not heavier may have to go with others: at least the mass cut */
+  mpmi_densities *densities; /* [bodies] */
+  int64_t densities_capacity;
   int32_t walls_changed;
   mpmi_parts *parts; /* of several parts of a problem this one, or NULL */
 } mpmi_layout;

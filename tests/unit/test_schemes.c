@@ -37,8 +37,8 @@ static world_desc describe(comparison *c, int64_t cells) {
 }
 
 /* Random places at odd multiples of h / 32 of the whole grid, velocities, domains, deformations and, where
- * they are carried, matrices. On the linear basis each cell has a particle near its centre: no node is light,
- * and the step is that of the book. */
+ * they are carried, matrices. On the linear basis each cell has a particle near its centre, with more
+ * volume at the faces: no node is light, and the step is that of the book. */
 static void scatter_cloud(world *w, mpm_particles *set, const world_desc *d, dice *random, int64_t n) {
   double *x = malloc((size_t)n * 28 * sizeof *x), *v = x + 3 * n, *size = v + 3 * n, *F = size + 3 * n,
          *C = F + 9 * n, *volume = C + 9 * n;
@@ -48,8 +48,10 @@ static void scatter_cloud(world *w, mpm_particles *set, const world_desc *d, dic
     volume[p] = 1.0;
     for (int32_t k = 0; k < w->dim; ++k) {
       const double h = d->grid.spacing[k], cells = (double)d->grid.cells[k];
-      const double at = even ? (double)(rest % (int64_t)cells) + throw_between(random, 0.4, 0.6)
-                             : throw_between(random, 0.0, cells);
+      const int64_t cell = rest % (int64_t)cells, last = (int64_t)cells - 1;
+      const double at =
+          even ? (double)cell + throw_between(random, 0.4, 0.6) : throw_between(random, 0.0, cells);
+      if (even) volume[p] *= cell == 0 || cell == last ? 1.5 : 1.0;
       rest /= (int64_t)cells;
       x[k * n + p] = d->grid.origin[k] + h * (floor(at * 16.0) + 0.5) / 16.0;
       v[k * n + p] = throw_between(random, -0.5, 0.5);

@@ -98,9 +98,9 @@ static double largest(int32_t dim, const basis *b, const verify_scheme *s, const
   return 0.1 * k;
 }
 
-/* The linear basis has no share for slivers and for particles on their way through nodes: theory, 16. */
+/* The linear basis has no share for particles that are compressed on their way through nodes: theory, 16. */
 static int32_t counts(const basis *b, int32_t body) {
-  return b->basis != MPM_LINEAR || body == LATTICE || body == FULL;
+  return b->basis != MPM_LINEAR || body != COMPRESSED;
 }
 
 /* How many of the settings of FMPM stay bounded at a share, over all of them. */
