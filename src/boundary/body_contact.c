@@ -401,6 +401,15 @@ static void sweep_task(void *data, int64_t k) {
   job->bound->step->work->report[k].contact_change = most;
 }
 
+mpm_status mpmi_body_contacts_place(mpmi_bound *bound) {
+  mpmi_contact_nodes *contact = &bound->nodes->contact;
+  mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact};
+  if (contact->measured || !contact->site_count) return MPM_OK;
+  const mpm_status status = mpmi_sites_measure(&search);
+  contact->measured = !status;
+  return status;
+}
+
 mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   mpmi_contact_nodes *contact = &bound->nodes->contact;
   mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact};
@@ -408,7 +417,7 @@ mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   mpmi_rigid_surfaces_predict(contact, bound->step->settings, bound->step->velocity_dt);
   if (!contact->site_count) return MPM_OK;
   if (!contact->listed) {
-    status = mpmi_sites_measure(&search);
+    status = mpmi_body_contacts_place(bound);
     if (!status) status = mpmi_meetings_find(&search);
     if (!status && contact->touch_count) status = mpmi_clouds_fill(&search);
     if (!status && contact->touch_count) status = mpmi_surface_gaps_find(&search);

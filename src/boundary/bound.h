@@ -90,7 +90,7 @@ mpm_status mpmi_ties_unfold(mpmi_bound *bound);
 
 /* ---- light_nodes.c ----------------------------------------------------------------------------------- */
 /* Lets light nodes go with heavier ones beside them, which take their forces. */
-void mpmi_light_nodes_lead(mpmi_bound *bound);
+mpm_status mpmi_light_nodes_lead(mpmi_bound *bound);
 
 /* ---- damping.c --------------------------------------------------------------------------------------- */
 /* Changes the increments of what nothing holds by local and mass damping; does nothing without them. */
@@ -121,6 +121,8 @@ mpm_status mpmi_prescribed_share(mpmi_bound *bound);
 static inline int32_t mpmi_bodies_touch(const mpmi_bound *bound) {
   return bound->nodes->contact.touch_count > 0;
 }
+/* Finds which nodes are near surfaces of obstacles and walls. */
+mpm_status mpmi_body_contacts_place(mpmi_bound *bound);
 /* Finds where bodies may touch, and asks the host for coefficients of friction. */
 mpm_status mpmi_body_contacts_find(mpmi_bound *bound);
 /* Lets bodies act on each other, or with keeps, in a projection without forces, keeps their contacts as they

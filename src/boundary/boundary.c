@@ -79,7 +79,7 @@ mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projectio
                       .records = projection->recorded && nodes->has_impulses,
                       .loads = projection->forces && settings->surfaces.count > 0};
   mpm_status status = mpmi_ties_fold(&bound);
-  if (!status && projection->contact != MPMI_CONTACT_NONE) mpmi_light_nodes_lead(&bound);
+  if (!status && projection->contact != MPMI_CONTACT_NONE) status = mpmi_light_nodes_lead(&bound);
   if (!status) status = projection->main ? act(&bound, projection) : act_on_velocities(&bound, projection);
   if (!status) status = mpmi_ties_unfold(&bound);
   if (status) return status;

@@ -4,6 +4,7 @@
  * along lines of nodes, and gives them its force by the transposed rule (docs/theory.md, 7.1): a particle
  * that hardly reaches into a cell strains and pulls as if it had stayed in the cell beside. */
 #include "boundary/bound.h"
+#include "contact/contact.h"
 
 #include <float.h>
 #include <math.h>
@@ -15,8 +16,9 @@ enum { MOST_LEADERS = 24 };
  * mpmi_layout_create, is for so many. */
 enum { ROUNDS = 2 };
 
-/* Up to this share of mass a node goes with others where no line has its second node. */
-#define LONE_SHARE 1e-5
+/* Up to this share of mass a node goes with others where no line has its second node, and where it may touch
+ * another body. */
+#define LEAST_SHARE 1e-5
 
 /* The nodes that a light one goes with. Their coefficients have the sum 1. */
 typedef struct leaders {
@@ -76,12 +78,23 @@ static double whole_mass(const mpmi_bound *bound, int64_t slot) {
   return mass;
 }
 
-/* Returns the share of the mass of a node beside, up to which one of this body is light. A light material is
- * no sliver of the heavy one with which it is bonded. */
+/* Returns 1 where contact may take the force on a node. */
+static int32_t may_touch(const mpmi_bound *bound, int64_t slot) {
+  const mpmi_contact_search search = {bound->step, bound->nodes, bound->values, &bound->nodes->contact};
+  return bound->nodes->contact.site_count && mpmi_may_touch(&search, slot);
+}
+
+/* Returns the share of the mass of a node beside, up to which one is light. A light material is no sliver of
+ * the heavy one with which it is bonded. Where bodies touch, a node pushes the other body while it has its
+ * own force: there only those go with others that would be thrown, which are few where particles are strained
+ * by velocities that they have given, unless their matrices hand the gradient of a node back. */
 static double light_share(const mpmi_bound *bound, int64_t slot) {
   const mpmi_layout *layout = bound->step->layout;
+  const mpmi_settings *settings = bound->step->settings;
+  const int32_t throws = settings->desc.scheme == MPM_USL || mpmi_is_affine(settings);
   const mpmi_densities *of = &layout->densities[layout->blocks.body[slot / layout->blocks.nodes]];
-  return MPMI_LIGHT_SHARE * (of->least / of->most);
+  const double share = MPMI_LIGHT_SHARE * (of->least / of->most);
+  return !throws && may_touch(bound, slot) ? fmin(LEAST_SHARE, share) : share;
 }
 
 static int32_t is_light(const mpmi_bound *bound, int64_t slot) {
@@ -104,7 +117,7 @@ static int32_t leads(const mpmi_bound *bound, int64_t slot, double mass, double 
  * Without it the force is moved aside, which turns the body: that is left to nodes with hardly any. */
 static void add_lines(const mpmi_bound *bound, int64_t slot, int32_t axes, leaders *found) {
   const double light = whole_mass(bound, slot);
-  const double most = light_share(bound, slot), share = found->lone ? fmin(LONE_SHARE, most) : most;
+  const double most = light_share(bound, slot), share = found->lone ? fmin(LEAST_SHARE, most) : most;
   double sum = 0.0;
   for (int32_t i = 0; i < 27; ++i) {
     int32_t by[3];
@@ -276,7 +289,9 @@ static int64_t to_be_led(const mpmi_bound *bound, int64_t listed) {
 }
 
 /* All light nodes are looked at before any of them is changed: no result depends on their order. */
-void mpmi_light_nodes_lead(mpmi_bound *bound) {
+mpm_status mpmi_light_nodes_lead(mpmi_bound *bound) {
+  const mpm_status status = bound->nodes->light_count ? mpmi_body_contacts_place(bound) : MPM_OK;
+  if (status) return status;
   for (int64_t n = 0; n < bound->nodes->light_count; ++n)
     bound->nodes->light[n].slot = to_be_led(bound, bound->nodes->light[n].slot);
   over_light_nodes(bound, start);
@@ -285,4 +300,5 @@ void mpmi_light_nodes_lead(mpmi_bound *bound) {
     over_light_nodes(bound, give_rest);
   }
   over_light_nodes(bound, follow);
+  return MPM_OK;
 }

@@ -159,7 +159,8 @@ typedef struct mpmi_contact_nodes {
   int64_t coupled_count, coupled_capacity, merged_capacity;
   double *work; /* [tasks][work_each] memory to find normals in */
   int64_t work_capacity, work_each;
-  int32_t listed; /* meetings and clouds are those of the step */
+  int32_t measured; /* near surfaces are those of the step */
+  int32_t listed;   /* so are meetings and clouds */
 } mpmi_contact_nodes;
 
 void mpmi_contact_nodes_free(mpmi_contact_nodes *contact, mpm_context *context);
