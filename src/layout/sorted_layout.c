@@ -182,13 +182,21 @@ static mpm_status find_densities(mpmi_layout *layout, const mpmi_settings *setti
   return MPM_OK;
 }
 
+/* Returns the most that a node of a full body has, where particles are not pressed into half of their volume;
+ * at least that of two of the heaviest along each axis, for masses that hosts set. */
+static double full_mass(const mpmi_layout *layout, const mpmi_settings *settings, double heaviest) {
+  double densest = 0.0, cell = 1.0;
+  for (int32_t m = 0; m < layout->member_count; ++m)
+    densest = fmax(densest, layout->member[m].set->material->density);
+  for (int32_t k = 0; k < settings->grid->dim; ++k) cell *= settings->grid->desc.spacing[k];
+  return fmax(2.0 * densest * cell, heaviest * (double)(1 << settings->grid->dim));
+}
+
 /* Finds the mass cut: a node that is lighter is not divided by its mass, and nothing holds it. The lightest
  * that a particle can make is that in the corner of a 3-D cell, 2^-180 of it on the linear basis. There force
  * over mass grows as mass vanishes, and steps that divide by it look among the nodes up to the light cut for
- * those that must go with others: that is their share of what a cell with three particles along each axis
- * has. */
+ * those that must go with others. */
 static mpm_status find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
-  static const double in_cell[] = {1.0, 3.0, 9.0, 27.0};
   double heaviest = 0.0;
   for (int32_t m = 0; m < layout->member_count; ++m)
     if (layout->member[m].set->count || layout->parts) /* the mass is that of all parts */
@@ -196,7 +204,7 @@ static mpm_status find_mass_cut(mpmi_layout *layout, const mpmi_settings *settin
   layout->mass_cut = fmax(DBL_MIN, 1e-60 * heaviest); /* the inverse of a lighter one may not be finite */
   layout->light_cut = layout->mass_cut;
   if (settings->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(settings))
-    layout->light_cut = fmax(layout->mass_cut, MPMI_LIGHT_SHARE * in_cell[settings->grid->dim] * heaviest);
+    layout->light_cut = fmax(layout->mass_cut, MPMI_LIGHT_SHARE * full_mass(layout, settings, heaviest));
   return find_densities(layout, settings);
 }
 
