@@ -505,8 +505,7 @@ export interface AdvanceDesc {
    * largest share at which bodies were found to stay bounded, by basis and scheme: with all transfers in 1-D
    * and 2-D (of MPM_XPIC order 2, of MPM_FMPM 2 and 8), with MPM_FLIP in 3-D. With MPM_USL that is 0.40 on
    * MPM_LINEAR and MPM_BSPLINE2, 0.60 on MPM_BSPLINE3, 0.27 with GIMP; with MPM_MUSL and MPM_USF 0.60, 0.67,
-   * 0.67 and 0.47, but 0.33 with MPM_CPGIMP and MPM_USF. On MPM_LINEAR bodies that reach into empty cells by
-   * slivers want 0.3, with MPM_USL and XPIC less. Implicit: ignored.
+   * 0.67 and 0.47, but 0.33 with MPM_CPGIMP and MPM_USF. Implicit: ignored.
    */
   cfl?: number;
   /** most that the first sub-step takes; 0 (default): the controller's dt */

@@ -205,14 +205,6 @@ static void over_light_nodes(mpmi_bound *bound, light_fn fn) {
   }
 }
 
-static void start(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
-  (void)with;
-  for (int32_t c = 0; c < bound->dim; ++c) {
-    node->before[c] = mpmi_velocity(bound->values, node->slot)[c];
-    node->gain[c] = mpmi_increment_of(bound, node->slot, c);
-  }
-}
-
 /* Returns 1 where a node goes with its own force into a wall that bears. */
 static int32_t is_pressed(const mpmi_bound *bound, const mpmi_light_node *node, int32_t face) {
   const int32_t k = face / 2;
@@ -267,12 +259,6 @@ static void set(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, dou
   if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, slot)[c] = increment;
 }
 
-static void follow(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
-  (void)with;
-  for (int32_t c = 0; c < bound->dim; ++c)
-    set(bound, node->slot, c, node->before[c] + node->gain[c], node->gain[c]);
-}
-
 /* A node that is not light after all, or that none leads, moves by its own force. */
 static void go_alone(const mpmi_bound *bound, int64_t slot) {
   for (int32_t c = 0; c < bound->dim && mpmi_has_increments(bound->values); ++c)
@@ -288,17 +274,28 @@ static int64_t to_be_led(const mpmi_bound *bound, int64_t listed) {
   return -1;
 }
 
+static void begin(const mpmi_bound *bound, mpmi_light_node *node) {
+  node->slot = to_be_led(bound, node->slot);
+  for (int32_t c = 0; c < bound->dim && node->slot >= 0; ++c) {
+    node->before[c] = mpmi_velocity(bound->values, node->slot)[c];
+    node->gain[c] = mpmi_increment_of(bound, node->slot, c);
+  }
+}
+
+static void follow(mpmi_bound *bound, const mpmi_light_node *node) {
+  for (int32_t c = 0; c < bound->dim && node->slot >= 0; ++c)
+    set(bound, node->slot, c, node->before[c] + node->gain[c], node->gain[c]);
+}
+
 /* All light nodes are looked at before any of them is changed: no result depends on their order. */
 mpm_status mpmi_light_nodes_lead(mpmi_bound *bound) {
   const mpm_status status = bound->nodes->light_count ? mpmi_body_contacts_place(bound) : MPM_OK;
   if (status) return status;
-  for (int64_t n = 0; n < bound->nodes->light_count; ++n)
-    bound->nodes->light[n].slot = to_be_led(bound, bound->nodes->light[n].slot);
-  over_light_nodes(bound, start);
+  for (int64_t n = 0; n < bound->nodes->light_count; ++n) begin(bound, &bound->nodes->light[n]);
   for (int32_t round = 0; round < ROUNDS; ++round) {
     over_light_nodes(bound, look);
     over_light_nodes(bound, give_rest);
   }
-  over_light_nodes(bound, follow);
+  for (int64_t n = 0; n < bound->nodes->light_count; ++n) follow(bound, &bound->nodes->light[n]);
   return MPM_OK;
 }

@@ -29,8 +29,8 @@ typedef struct mpmi_worklist {
 /* There is one list of all blocks with particles, and then one for each colour. */
 enum { MPMI_WORKLISTS = 1 + MPMI_COLOURS };
 
-/* A node that has this share of the mass of one beside it, or less, goes with it (boundary/light_nodes.c), in a
- * body of one density. */
+/* A node that has this share of the mass of one beside it, or less, goes with it (boundary/light_nodes.c),
+ * in a body of one density. */
 #define MPMI_LIGHT_SHARE 0.1
 
 /* The densities of the laws of a body's sets. */

@@ -207,8 +207,8 @@ START_TEST(alone_with_a_gradient) {
 }
 END_TEST
 
-/* A block of 8 x 8 cells with noise, of which a row reaches a little into the next cells, stays bounded at half
- * of the stable step, by every scheme and transfer, whatever share of a layer the nodes there have. */
+/* A block of 8 x 8 cells with noise, of which a row reaches a little into the next cells, stays bounded at
+ * half of the stable step, by every scheme and transfer, whatever share of a layer the nodes there have. */
 static void shake(const stepping *how, const transfer_option *by, double into) {
   char name[120];
   world w;
