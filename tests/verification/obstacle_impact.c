@@ -8,7 +8,6 @@ typedef struct hits {
   int32_t against, cells, count;
   double shift[4][2], degrees[4]; /* shift: along the surface and out of it, in cells */
   double rebound, spread;         /* least rebound; bound of its spread, 0: none */
-  int32_t mean;                   /* 1: the mean rebound is asked for instead of the least and the largest */
   const char *reason;             /* NULL, or why the least rebound is not met */
 } hits;
 
@@ -19,7 +18,7 @@ static void keep(double *range, double value) {
 
 static void impact(const hits *series, FILE *table) {
   double touch[2] = {HUGE_VAL, 0.0}, rebound[2] = {HUGE_VAL, 0.0}, force[2] = {HUGE_VAL, 0.0};
-  double momentum = 0.0, energy = 0.0, least = 0.0, spin = 0.0, mean = 0.0;
+  double momentum = 0.0, energy = 0.0, least = 0.0, spin = 0.0;
   const int32_t count = verify_quick() ? 1 : series->count;
   for (int32_t k = 0; k < count; ++k) {
     const disc_hit a = {.against = series->against,
@@ -36,7 +35,6 @@ static void impact(const hits *series, FILE *table) {
             o.when, o.rebound, o.energy, o.energy_end, o.momentum, o.spin, o.force, o.steady, o.dissipation);
     if (!(series->degrees[k] > 0.0)) keep(touch, o.touch);
     keep(rebound, o.rebound);
-    mean += o.rebound / count;
     keep(force, o.steady);
     momentum = fmax(momentum, o.momentum);
     energy = fmax(energy, o.energy);
@@ -52,9 +50,7 @@ static void impact(const hits *series, FILE *table) {
   verify_gate_of(name, "least dissipation of a step", least, -1e-12, 0.0, "contact takes energy");
   verify_gate_of(name, "first touch (1.586)", touch[0], 1.576, 1.596, disc_reference);
   verify_gate_of(name, "last touch (1.586)", touch[1], 1.576, 1.596, disc_reference);
-  if (series->mean) {
-    verify_gate_of(name, "mean rebound / speed (FEM 0.909)", mean, series->rebound, 0.919, disc_reference);
-  } else if (series->reason && !verify_quick()) {
+  if (series->reason && !verify_quick()) {
     char what[120];
     snprintf(what, sizeof what, "%s: least rebound / speed (FEM 0.909)", name);
     verify_expected_failure(what, rebound[0], series->rebound, 0.919, disc_reference, series->reason);
@@ -64,9 +60,8 @@ static void impact(const hits *series, FILE *table) {
   }
   if (!(series->spread > 0.0) || verify_quick()) return;
   const char *source = "independence of the grid; set tolerance";
-  if (!series->mean)
-    verify_gate_of(name, "largest rebound / speed (FEM 0.909)", rebound[1], series->rebound, 0.919,
-                   disc_reference);
+  verify_gate_of(name, "largest rebound / speed (FEM 0.909)", rebound[1], series->rebound, 0.919,
+                 disc_reference);
   verify_gate_of(name, "spread of the rebound", rebound[1] - rebound[0], 0.0, series->spread, source);
   verify_gate_of(name, "largest over least peak force, means over 0.03", force[1] / force[0], 1.0, 1.04,
                  source);
@@ -173,9 +168,8 @@ int main(int argc, char **argv) {
        {0.0},
        0.84,
        0.012,
-       0,
        NULL},
-      {"friction wall", ON_WALL, 40, 1, {{0.0}}, {0.0}, 0.84, 0.0, 0, NULL},
+      {"friction wall", ON_WALL, 40, 1, {{0.0}}, {0.0}, 0.84, 0.0, NULL},
       {"turned plane",
        ON_PLANE,
        40,
@@ -184,7 +178,6 @@ int main(int argc, char **argv) {
        {0.0, 20.0, 33.0, 45.0},
        0.82,
        0.035,
-       0,
        NULL},
       {"disc shifted along a friction wall",
        ON_WALL,
@@ -194,10 +187,9 @@ int main(int argc, char **argv) {
        {0.0},
        0.84,
        0.012,
-       0,
        on_nodes},
-      {"plane", ON_PLANE, 80, 1, {{0.0, 0.3}}, {0.0}, 0.885, 0.0, 0, NULL},
-      {"friction wall", ON_WALL, 80, 1, {{0.0}}, {0.0}, 0.885, 0.0, 0, NULL},
+      {"plane", ON_PLANE, 80, 1, {{0.0, 0.3}}, {0.0}, 0.885, 0.0, NULL},
+      {"friction wall", ON_WALL, 80, 1, {{0.0}}, {0.0}, 0.885, 0.0, NULL},
       {"rigid body",
        ON_BODY,
        40,
@@ -206,9 +198,8 @@ int main(int argc, char **argv) {
        {0.0},
        0.84,
        0.03,
-       1,
-       NULL},
-      {"rigid body", ON_BODY, 80, 2, {{0.0, 0.1}, {0.3, 0.3}}, {0.0}, 0.885, 0.012, 1, NULL}};
+       "why one place of four loses more is not known; their mean is 0.844"},
+      {"rigid body", ON_BODY, 80, 2, {{0.0, 0.1}, {0.3, 0.3}}, {0.0}, 0.885, 0.012, NULL}};
   for (int32_t k = 0; k < (verify_quick() ? 2 : 8); ++k) impact(&series[k], table);
   plates("driven and fixed plane", ON_PLANE, MPM_MUSL, MPM_FLIP, history);
   plates("driven and fixed plane, APIC", ON_PLANE, MPM_USL, MPM_APIC, NULL);
