@@ -171,13 +171,17 @@ static double of_leaders(const mpmi_bound *bound, const leaders *of,
   return sum;
 }
 
-/* Returns how much of a velocity the leaders of a node take on when it gives them its momentum. */
-static double response(const mpmi_bound *bound, const leaders *of, double mass, int32_t c) {
+/* Returns how much of a velocity the leaders of a node take on when it gives them its momentum: those in the
+ * plane of a wall that holds have the mass of their mirror images, too, if the node is not in it. */
+static double response(const mpmi_bound *bound, const leaders *of, int64_t slot) {
   double sum = 0.0;
-  for (int32_t k = 0; k < of->count; ++k)
-    if (!(of->held[k] >> c & 1))
-      sum += mass * of->share[k] * of->share[k] / mpmi_moving_mass(bound, of->slot[k]);
-  return sum;
+  for (int32_t k = 0; k < of->count; ++k) {
+    double mass = mpmi_moving_mass(bound, of->slot[k]);
+    for (int32_t face = 0; face < 2 * bound->dim; ++face)
+      if (held_by(bound, of->slot[k], face) && !held_by(bound, slot, face)) mass *= 2.0;
+    sum += of->share[k] * of->share[k] / mass;
+  }
+  return mpmi_moving_mass(bound, slot) * sum;
 }
 
 /* The list holds slots of nodes with mass. Returns the node that moves for one of them: itself if it is free,
@@ -239,9 +243,9 @@ static void look(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) 
 /* Gives the leaders so much of the momentum that a node has apart from them that it goes with them after
  * that, where no other gives to them, too. */
 static void give_rest(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
-  const double mass = mpmi_moving_mass(bound, node->slot);
+  const double mass = mpmi_moving_mass(bound, node->slot),
+               part = 1.0 / (1.0 + response(bound, with, node->slot));
   for (int32_t c = 0; c < bound->dim; ++c) {
-    const double part = 1.0 / (1.0 + response(bound, with, mass, c));
     const double before = part * (node->before[c] - node->led_before[c]);
     const double gain = part * (node->gain[c] - node->led_gain[c]);
     give(bound, with, c, mass * (before + gain), mass * gain);

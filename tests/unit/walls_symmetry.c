@@ -27,8 +27,8 @@ static void fixed_velocity(int32_t dim, int64_t n, const double *x, double *v) {
     for (int32_t k = 0; k < dim; ++k) v[k * n + p] = 0.3 * sin(rate[k] * (x[p] - plane));
 }
 
-/* fine: cells of half the edge. thin: a body of one cell on either side of the plane that reaches into the next
- * ones by a fiftieth: its light nodes go with those in the plane. */
+/* fine: cells of half the edge. thin: a body of one cell on either side of the plane that reaches into the
+ * next ones by a fiftieth: its light nodes go with those in the plane. */
 static fields run(const method *how, int32_t kind, int32_t dim, int32_t whole, int32_t steps, int32_t fine,
                   int32_t thin) {
   const int32_t fixed = kind == MPM_WALL_FIXED;
