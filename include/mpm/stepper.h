@@ -365,8 +365,7 @@ typedef struct mpm_advance_desc {
    * largest share at which bodies were found to stay bounded, by basis and scheme: with all transfers in 1-D
    * and 2-D (of MPM_XPIC order 2, of MPM_FMPM 2 and 8), with MPM_FLIP in 3-D. With MPM_USL that is 0.40
    * on MPM_LINEAR and MPM_BSPLINE2, 0.60 on MPM_BSPLINE3, 0.27 with GIMP; with MPM_MUSL and MPM_USF 0.60,
-   * 0.67, 0.67 and 0.47, but 0.33 with MPM_CPGIMP and MPM_USF.
-   * Implicit: ignored. */
+   * 0.67, 0.67 and 0.47, but 0.33 with MPM_CPGIMP and MPM_USF. Implicit: ignored. */
   double cfl;
   double dt_first;   /**< most that the first sub-step takes; 0 (default): the controller's dt */
   double dt_min;     /**< size below which sub-steps are not cut; 0 (default): no bound */

@@ -12,8 +12,8 @@
 /* The next two nodes on a line, for up to 12 lines. */
 enum { MOST_LEADERS = 24 };
 
-/* What nodes that share leaders give each other's is given back in the second round. The margin of parts,
- * mpmi_layout_create, is for so many. */
+/* What nodes give leaders that they share is seen in the second round, without which slivers grow by USL. The
+ * margin of parts, in mpmi_layout_create, is for so many. */
 enum { ROUNDS = 2 };
 
 /* Up to this share of mass a node goes with others where no line has its second node, and where it may touch
@@ -98,8 +98,9 @@ static double light_share(const mpmi_bound *bound, int64_t slot) {
 }
 
 static int32_t is_light(const mpmi_bound *bound, int64_t slot) {
-  const double mass = whole_mass(bound, slot), share = light_share(bound, slot);
+  const double mass = whole_mass(bound, slot);
   if (mass > bound->step->layout->light_cut) return 0;
+  const double share = light_share(bound, slot);
   for (int32_t i = 0; i < 27; ++i) {
     int32_t by[3];
     const int64_t near = direction_of(bound, i, by) ? beside(bound, slot, by, 1) : -1;

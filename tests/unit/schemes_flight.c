@@ -55,6 +55,17 @@ static world_desc flight_world(int32_t dim, int64_t cells, const basis_option *b
   return d;
 }
 
+/* Fills a cube with two particles per cell along each axis, and moves it. Returns the count of particles. */
+static int64_t fill_beside(world *w, mpm_particles *set, double low, double high, double by) {
+  const double lower[3] = {low, low, low}, upper[3] = {high, high, high};
+  const int64_t n = world_fill(w, set, lower, upper, 2);
+  double *x = fetch(w, set, "position", w->dim);
+  for (int64_t i = 0; i < w->dim * n; ++i) x[i] += by;
+  put(w, set, "position", w->dim, x);
+  free(x);
+  return n;
+}
+
 /* Cells have the edge 1, and each step goes a quarter of it, or a quarter farther than the last one: two
  * particles per cell land on nodes. */
 static void fly(int32_t dim, const basis_option *basis, const stepping *how, const transfer_option *by,
@@ -157,8 +168,7 @@ static void fly_slowly(const basis_option *basis, const stepping *how, const tra
   snprintf(name, sizeof name, "%s, scheme %d%s, %s, %g, slowly", basis->name, (int)how->scheme,
            how->projected ? " projected" : "", by->name, offset);
   mpm_particles *set = world_open(&w, &d);
-  const double start[2] = {5.0 + offset, 5.0 + offset}, end[2] = {7.0 + offset, 7.0 + offset};
-  const int64_t n = world_fill(&w, set, start, end, 2);
+  const int64_t n = fill_beside(&w, set, 5.0, 7.0, offset);
   const double dt = 0.4 * world_stable_dt(&w), v[2] = {1e-3 / dt, 5e-4 / dt};
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
   for (int32_t k = 0; k < 600; ++k) {
@@ -214,8 +224,7 @@ static void shake(const stepping *how, const transfer_option *by, double into) {
   world w;
   const world_desc d = flight_world(2, 14, &basis_options[0], how, by);
   mpm_particles *set = world_open(&w, &d);
-  const double low[2] = {3.25 + into, 3.25 + into}, high[2] = {11.25 + into, 11.25 + into};
-  const int64_t n = world_fill(&w, set, low, high, 2);
+  const int64_t n = fill_beside(&w, set, 3.0, 11.0, 0.25 + into);
   double *v = malloc((size_t)(2 * n) * sizeof *v);
   for (int64_t i = 0; i < 2 * n; ++i) v[i] = 1e-4 * noise_at((uint64_t)i);
   put(&w, set, "velocity", 2, v);
@@ -235,6 +244,34 @@ START_TEST(slivers) {
   for (int32_t s = 0; s < WAYS; ++s)
     for (int32_t t = 0; t < TRANSFERS && ways[s].scheme != MPM_NEWMARK; ++t)
       if (transfer_options[t].transfer != MPM_APIC_MLS) shake(&ways[s], &transfer_options[t], into[_i]);
+}
+END_TEST
+
+/* Where no other light node gives to its leaders, one has the velocity that these end with. */
+START_TEST(light_node_follows) {
+  world w;
+  const world_desc d = flight_world(1, 12, &basis_options[0], &ways[_i], &transfer_options[0]);
+  mpm_particles *set = world_open(&w, &d);
+  const int64_t count = fill_beside(&w, set, 3.0, 8.0, 0.28);
+  double v[10], F[90] = {0.0};
+  ck_assert_int_eq(count, 10);
+  for (int64_t p = 0; p < count; ++p) {
+    v[p] = noise_at((uint64_t)p);
+    F[p] = 1.0 + 0.1 * noise_at((uint64_t)(p + count));
+    F[4 * count + p] = F[8 * count + p] = 1.0;
+  }
+  put(&w, set, "velocity", 1, v);
+  put(&w, set, "deformation_gradient", 9, F);
+  ck_ok(&w, mpm_step_begin(w.stepper, 1e-2));
+  ck_ok(&w, mpm_step_grid(w.stepper));
+  int64_t n;
+  double *x = fetch_nodes(&w, "position", &n), *u = fetch_nodes(&w, "velocity", &n);
+  ck_assert_int_eq(n, 7);
+  ck_holds(x[6] == 9.0);
+  ck_within("velocity of a light node", u[6], 2.0 * u[5] - u[4], 1e-12);
+  free(x), free(u);
+  ck_ok(&w, mpm_step_end(w.stepper, NULL));
+  world_close(&w);
 }
 END_TEST
 
@@ -275,6 +312,7 @@ TCase *schemes_flight_case(void) {
   tcase_add_loop_test(tc, slow_flight, 0, BASES);
   tcase_add_loop_test(tc, alone_with_a_gradient, 0, 3);
   tcase_add_loop_test(tc, slivers, 0, 5);
+  tcase_add_loop_test(tc, light_node_follows, 0, WAYS - 1); /* not of implicit steps */
   tcase_add_loop_test(tc, light_material, 0, 9);
   return tc;
 }
