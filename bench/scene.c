@@ -324,10 +324,12 @@ mpm_status bench_open(bench_scene *scene, const bench_case *of, const bench_opti
   return status || !options->markers ? status : add_surface(scene, of, &l, options->markers);
 }
 
+/* Older libraries, beside which cases are run, lack functions: only a case that needs one calls it. */
 void bench_close(bench_scene *scene) {
   mpm_stepper_destroy(scene->stepper);
-  mpm_surface_destroy(scene->surface);
-  for (int32_t i = 0; i < BENCH_MOST_OBSTACLES; ++i) mpm_obstacle_destroy(scene->obstacle[i]);
+  if (scene->surface) mpm_surface_destroy(scene->surface);
+  for (int32_t i = 0; i < BENCH_MOST_OBSTACLES && scene->obstacle[i]; ++i)
+    mpm_obstacle_destroy(scene->obstacle[i]);
   mpm_particles_destroy(scene->part);
   mpm_particles_destroy(scene->body);
   mpm_material_destroy(scene->material);

@@ -61,6 +61,7 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
                                              slots)
                          : MPM_OK) ||
       (status = MPMI_RESERVE_MORE(c, nodes->light, nodes->light_capacity, light)) ||
+      (status = MPMI_RESERVE_MORE(c, nodes->leader, nodes->leader_capacity, 4 * light)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->tie_state, nodes->tie_capacity, ties)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->contact_state, nodes->contact_capacity, contacts)))
     return status;
@@ -81,6 +82,7 @@ void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {
   mpmi_nodal_free(c, &nodes->sums);
   mpmi_contact_nodes_free(&nodes->contact, c);
   MPMI_FREE_ARRAY(c, nodes->light, nodes->light_capacity);
+  MPMI_FREE_ARRAY(c, nodes->leader, nodes->leader_capacity);
   MPMI_FREE_ARRAY(c, nodes->impulse, nodes->impulse_capacity);
   MPMI_FREE_ARRAY(c, nodes->held, nodes->held_capacity);
   MPMI_FREE_ARRAY(c, nodes->held_value, nodes->held_capacity);

@@ -77,9 +77,20 @@ typedef struct mpmi_prescription {
 /* A node that is so light that it goes with others (boundary/light_nodes.c): its velocity before the forces
  * and its increment, and those of its leaders. */
 typedef struct mpmi_light_node {
-  int64_t slot; /* its own; then that of the node to be led, or -1 */
+  int64_t slot;        /* its own; then that of the node to be led, or -1 */
+  uint32_t lines;      /* the directions in which its leaders lie, as bits */
+  int32_t count, lone; /* of leaders; lone: no line has its second node */
+  int64_t first;       /* of its leaders */
+  double part;         /* of what it gives: with this it goes as its leaders do after that */
   double before[3], gain[3], led_before[3], led_gain[3];
 } mpmi_light_node;
+
+/* A node that a light one goes with. The shares of all have the sum 1. */
+typedef struct mpmi_leader {
+  int64_t slot;
+  double share;
+  int32_t held; /* components that a wall holds, as bits */
+} mpmi_leader;
 
 /* A node that moves, where a surface prescribes something (boundary/surface_sites.c). The vector is the
  * velocity that it asks for, or the direction in which it sets the velocity to a value. */
@@ -134,6 +145,8 @@ typedef struct mpmi_nodes {
   int64_t damping_capacity;
   mpmi_light_node *light; /* in the order of slots */
   int64_t light_count, light_capacity;
+  mpmi_leader *leader; /* of one light node after the other */
+  int64_t leader_capacity;
   mpmi_tie_state *tie_state; /* [ties] */
   int64_t tie_capacity;
   mpmi_contact_state *contact_state; /* [contacts] */
