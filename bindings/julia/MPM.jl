@@ -1875,8 +1875,9 @@ gives to other particles is ignored. NULL takes the callback away: the particles
 
 On its prescribed axes a particle moves by dt u and ends with the velocity u, with every transfer; the nodes to which
 it gives mass move with u too, or with the mean of several by that mass. On other axes, and in deformation and stress,
-it is a particle like others. MPM_NONFINITE names the particle. The host sets the callback again after it has loaded a
-state. MPM_E_NOT_FOUND: the set is not in this stepper.
+it is a particle like others. MPM_NONFINITE names the particle. A state does not hold the callback: after one has been
+loaded that had it, no step is made (MPM_E_STATE) until it has been set, before loading or after, or has been answered
+by NULL. MPM_E_NOT_FOUND: the set is not in this stepper.
 """
 function mpm_stepper_set_motion(stepper, particles, mean_velocity, user)
     return ccall((:mpm_stepper_set_motion, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_particles}, Ptr{Cvoid}, Ptr{Cvoid}),
@@ -2239,7 +2240,8 @@ end
 
 """
 Sets how an obstacle moves in each step, for MPM_MOTION_PRESCRIBED (MPM_E_UNSUPPORTED with others). NULL: it keeps its
-velocities. The host sets it again for an obstacle that it makes for a loaded state. MPM_E_STATE during a staged step.
+velocities. A state does not hold it: after one has been loaded that had it, no step is made (MPM_E_STATE) until it
+has been set, before loading or after, or has been answered by NULL. MPM_E_STATE during a staged step.
 """
 function mpm_obstacle_set_motion(obstacle, fn, user)
     return ccall((:mpm_obstacle_set_motion, libmpm), Int32, (Ptr{mpm_obstacle}, Ptr{Cvoid}, Ptr{Cvoid}),

@@ -118,8 +118,9 @@ MPM_API mpm_status mpm_stepper_add_obstacle(mpm_stepper *stepper, mpm_obstacle *
 MPM_API mpm_status mpm_stepper_remove_obstacle(mpm_stepper *stepper, mpm_obstacle *obstacle);
 
 /** Sets how an obstacle moves in each step, for MPM_MOTION_PRESCRIBED (MPM_E_UNSUPPORTED with others). NULL:
- * it keeps its velocities. The host sets it again for an obstacle that it makes for a loaded state.
- * MPM_E_STATE during a staged step. */
+ * it keeps its velocities. A state does not hold it: after one has been loaded that had it, no step is made
+ * (MPM_E_STATE) until it has been set, before loading or after, or has been answered by NULL. MPM_E_STATE
+ * during a staged step. */
 MPM_API mpm_status mpm_obstacle_set_motion(mpm_obstacle *obstacle, mpm_motion_fn fn, void *user);
 
 /** Sets how an obstacle meets the material, as mpm_obstacle_desc.contact does. MPM_E_ARG: a value is bad;

@@ -295,8 +295,10 @@ MPM_API mpm_status mpm_stepper_set_time(mpm_stepper *stepper, double t, int64_t 
  *
  * On its prescribed axes a particle moves by dt u and ends with the velocity u, with every transfer; the
  * nodes to which it gives mass move with u too, or with the mean of several by that mass. On other axes, and
- * in deformation and stress, it is a particle like others. MPM_NONFINITE names the particle. The host sets
- * the callback again after it has loaded a state. MPM_E_NOT_FOUND: the set is not in this stepper.
+ * in deformation and stress, it is a particle like others. MPM_NONFINITE names the particle. A state does not
+ * hold the callback: after one has been loaded that had it, no step is made (MPM_E_STATE) until it has been
+ * set, before loading or after, or has been answered by NULL. MPM_E_NOT_FOUND: the set is not in this
+ * stepper.
  */
 MPM_API mpm_status mpm_stepper_set_motion(mpm_stepper *stepper, mpm_particles *particles,
                                           mpm_particle_fn mean_velocity, void *user);

@@ -75,6 +75,7 @@ typedef struct mpmi_state_set_numbers {
   double impulse_total[3];     /* from format 3 on */
   int64_t body;                /* the same; before it all sets were in body 0 */
   mpmi_adaption_sums adaption; /* the same */
+  int64_t has_motion;          /* the same; 1: a callback says how its prescribed particles move */
 } mpmi_state_set_numbers;
 
 typedef struct mpmi_state_field {
@@ -152,8 +153,9 @@ mpm_status mpmi_state_read_contact(mpmi_archive *a, const mpm_stepper *s, mpmi_c
 typedef struct mpmi_state_obstacle {
   mpmi_pose pose;
   double force[3], torque[3];
+  int64_t has_motion; /* 1: a callback says how it moves */
 } mpmi_state_obstacle;
-_Static_assert(sizeof(mpmi_state_obstacle) == 19 * 8, "part of the format");
+_Static_assert(sizeof(mpmi_state_obstacle) == 20 * 8, "part of the format");
 void mpmi_state_write_obstacles(mpmi_archive *a, const mpm_stepper *s);
 mpm_status mpmi_state_read_obstacles(mpmi_archive *a, const mpm_stepper *s, mpmi_state_obstacle *saved);
 void mpmi_state_take_obstacles(const mpm_stepper *s, const mpmi_state_obstacle *saved);

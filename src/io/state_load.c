@@ -108,8 +108,8 @@ static void read_numbers(mpmi_archive *a, uint32_t format, int32_t sets, mpmi_st
     if (a->status) return;
     if (of->slots < 0 || of->slots > MPMI_MAX_SLOTS || of->slots % MPMI_PAD || of->count < 0 ||
         of->count > of->slots || of->next_id < 0 || of->body < 0 || of->body >= MPMI_MAX_BODIES ||
-        of->dirty & ~flags || !is_magnitude(of->mass_max) || !is_count(of->adaption.splits) ||
-        !is_count(of->adaption.added) || !is_count(of->adaption.merges))
+        of->dirty & ~flags || of->has_motion & ~1 || !is_magnitude(of->mass_max) ||
+        !is_count(of->adaption.splits) || !is_count(of->adaption.added) || !is_count(of->adaption.merges))
       mpmi_archive_damaged(a, "the numbers of a set make no sense");
   }
 }
@@ -325,6 +325,7 @@ static void take_sets(mpmi_state_loading *l) {
     exchange_storage(s->layout.member[m].set, &l->fresh[m]);
     s->layout.member[m].body = (int32_t)n->body;
     s->adaption[m].sums = n->adaption;
+    s->settings.motion[m].is_awaited = n->has_motion && !s->settings.motion[m].fn;
     mpmi_reaction *reaction = &s->history.reaction[m];
     memcpy(reaction->impulse, n->reaction, sizeof reaction->impulse);
     memcpy(reaction->impulse_total, n->impulse_total, sizeof reaction->impulse_total);

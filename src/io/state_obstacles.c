@@ -19,7 +19,8 @@ void mpmi_state_write_obstacles(mpmi_archive *a, const mpm_stepper *s) {
   mpmi_archive_same_int(a, "number of obstacles", list->count);
   for (int64_t i = 0; i < list->count; ++i) {
     const mpm_obstacle *obstacle = list->obstacle[i];
-    mpmi_state_obstacle saved = {.pose = obstacle->pose};
+    mpmi_state_obstacle saved = {.pose = obstacle->pose,
+                                 .has_motion = obstacle->motion || obstacle->awaits_motion};
     for (int32_t k = 0; k < 3; ++k) {
       saved.force[k] = obstacle->force[k];
       saved.torque[k] = obstacle->torque[k];
@@ -30,7 +31,8 @@ void mpmi_state_write_obstacles(mpmi_archive *a, const mpm_stepper *s) {
 }
 
 static void check_saved(mpmi_archive *a, const mpm_obstacle *obstacle, const mpmi_state_obstacle *saved) {
-  int32_t sound = mpmi_pose_is_sound(&saved->pose);
+  int32_t sound = mpmi_pose_is_sound(&saved->pose) && !(saved->has_motion & ~1) &&
+                  (!saved->has_motion || obstacle->desc.motion == MPM_MOTION_PRESCRIBED);
   for (int32_t k = 0; k < 3; ++k) {
     const int32_t moves = saved->pose.velocity[k] < 0.0 || saved->pose.velocity[k] > 0.0 ||
                           saved->pose.spin[k] < 0.0 || saved->pose.spin[k] > 0.0;
@@ -58,6 +60,7 @@ void mpmi_state_take_obstacles(const mpm_stepper *s, const mpmi_state_obstacle *
   for (int64_t i = 0; i < s->settings.obstacles.count; ++i) {
     mpm_obstacle *obstacle = s->settings.obstacles.obstacle[i];
     obstacle->pose = saved[i].pose;
+    obstacle->awaits_motion = saved[i].has_motion && !obstacle->motion;
     for (int32_t k = 0; k < 3; ++k) {
       obstacle->force[k] = saved[i].force[k];
       obstacle->torque[k] = saved[i].torque[k];

@@ -100,7 +100,9 @@ static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
                                      .dirty = set->dirty,
                                      .mass_max = set->mass_max,
                                      .body = s->layout.member[m].body,
-                                     .adaption = s->adaption[m].sums};
+                                     .adaption = s->adaption[m].sums,
+                                     .has_motion =
+                                         s->settings.motion[m].fn || s->settings.motion[m].is_awaited};
     memcpy(of_set.reaction, s->history.reaction[m].impulse, sizeof of_set.reaction);
     memcpy(of_set.impulse_total, s->history.reaction[m].impulse_total, sizeof of_set.impulse_total);
     mpmi_state_archive_set_numbers(a, MPMI_STATE_FORMAT, &of_set);

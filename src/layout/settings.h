@@ -14,10 +14,12 @@
 #include "surface/surface.h"
 #include "transfer/kernels.h"
 
-/* How the prescribed particles of a set move; fn NULL: they keep their velocity. */
+/* How the prescribed particles of a set move; fn NULL: they keep their velocity, unless the callback that the
+ * loaded state had is awaited. */
 typedef struct mpmi_motion {
   mpm_particle_fn fn;
   void *user;
+  int32_t is_awaited;
 } mpmi_motion;
 
 typedef struct mpmi_settings {

@@ -232,6 +232,7 @@ mpm_status mpm_obstacle_set_motion(mpm_obstacle *o, mpm_motion_fn fn, void *user
                      (int)o->desc.motion);
   o->motion = fn;
   o->motion_user = user;
+  o->awaits_motion = 0;
   return MPM_OK;
 }
 

@@ -30,6 +30,7 @@ struct mpm_obstacle {
   double force[3], torque[3];
   mpm_motion_fn motion;
   void *motion_user;
+  int32_t awaits_motion; /* the callback that the loaded state had: no step is made without an answer */
 };
 
 /* Obstacles of a stepper, in the order of adding. */

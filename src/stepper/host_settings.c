@@ -71,6 +71,23 @@ mpm_status mpm_stepper_set_motion(mpm_stepper *s, mpm_particles *particles, mpm_
   mpm_status status = mpmi_stepper_idle(s);
   if (!status) status = mpmi_members_find(&s->layout, &s->settings, particles, &m);
   if (status) return status;
-  s->settings.motion[m] = (mpmi_motion){mean_velocity, user};
+  s->settings.motion[m] = (mpmi_motion){mean_velocity, user, 0};
+  return MPM_OK;
+}
+
+mpm_status mpmi_motions_are_set(const mpm_stepper *s) {
+  const mpmi_obstacles *obstacles = &s->settings.obstacles;
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
+    if (s->settings.motion[m].is_awaited)
+      return mpmi_fail(s->context, MPM_E_STATE,
+                       "prescribed particles of set %d had a motion callback when the state was saved: give "
+                       "it to mpm_stepper_set_motion(), or NULL to let them keep their velocities",
+                       (int)m);
+  for (int64_t i = 0; i < obstacles->count; ++i)
+    if (obstacles->obstacle[i]->awaits_motion)
+      return mpmi_fail(s->context, MPM_E_STATE,
+                       "obstacle %lld had a motion callback when the state was saved: give it to "
+                       "mpm_obstacle_set_motion(), or NULL to let it keep its velocities",
+                       (long long)i);
   return MPM_OK;
 }

@@ -21,7 +21,7 @@ static mpm_status check_dt(mpm_stepper *s, double dt) {
   if (s->mapped)
     return mpmi_fail(s->context, MPM_E_STATE,
                      "%d views of nodal fields are out: release them before stepping", (int)s->mapped);
-  return MPM_OK;
+  return mpmi_motions_are_set(s);
 }
 
 /* All parts begin the same step, or none does. */

@@ -109,6 +109,10 @@ void mpmi_pairs_forget(mpmi_pair_records *pairs);
 /* Adds what a pair did to a report; sign is -1 where the body that is asked about is the first one. */
 void mpmi_pair_tell(const mpmi_pair_record *record, double sign, double dt, mpm_contact_info *info);
 
+/* ---- host_settings.c --------------------------------------------------------------------------------- */
+/* Returns MPM_E_STATE where a loaded state had motion callbacks that the host has not set again. */
+mpm_status mpmi_motions_are_set(const mpm_stepper *s);
+
 /* ---- obstacles.c ------------------------------------------------------------------------------------- */
 /* Lets all obstacles go. */
 void mpmi_obstacles_release(mpm_stepper *s);

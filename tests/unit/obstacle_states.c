@@ -133,6 +133,32 @@ START_TEST(saved_in_contact) {
 }
 END_TEST
 
+/* Saves what is awaited, too, and goes on as if the callback had been there before the state. */
+START_TEST(motion_is_awaited) {
+  scene s, other;
+  open_scene(&s, &methods[_i], 2, 1);
+  open_scene(&other, &methods[_i], 2, 1);
+  steps_of(&s, 8);
+  ck_ok(&other.w, mpm_obstacle_set_motion(other.obstacle[1], NULL, NULL));
+  for (int32_t way = 0; way < 3; ++way) {
+    world_copy(way == 2 ? &other.w : &s.w, &other.w); /* way 2: what awaits it is saved, and loaded again */
+    const uint64_t was = hash_of(&other);
+    ck_refused(&other.w, mpm_step(other.w.stepper, arena_dt, NULL), MPM_E_STATE,
+               "obstacle 1 had a motion callback when the state was saved");
+    ck_assert_uint_eq(hash_of(&other), was);
+    if (way) continue;
+    ck_ok(&other.w, mpm_obstacle_set_motion(other.obstacle[1], NULL, NULL));
+    world_step(&other.w, arena_dt); /* at its last velocity */
+  }
+  ck_ok(&other.w, mpm_obstacle_set_motion(other.obstacle[1], push_down, &other));
+  steps_of(&s, 6);
+  steps_of(&other, 6);
+  ck_assert_uint_eq(hash_of(&s), hash_of(&other));
+  close_scene(&s);
+  close_scene(&other);
+}
+END_TEST
+
 /* ---- steps that fail ----------------------------------------------------------------------------------- */
 static mpm_status stop(void *user, const mpm_step_info *info) {
   (void)info;
@@ -572,6 +598,7 @@ void add_obstacle_states(Suite *suite) {
   TCase *bits = tcase_create("bits"), *refusals = tcase_create("refusals"), *counts = tcase_create("threads");
   tcase_add_loop_test(counts, threads, 0, BROAD);
   tcase_add_loop_test(bits, saved_in_contact, 0, BROAD);
+  tcase_add_loop_test(bits, motion_is_awaited, 0, METHODS);
   tcase_add_loop_test(bits, failing_steps, 0, METHODS);
   tcase_add_loop_test(bits, asked_for_nodes_of_the_grid, 0, 3);
   tcase_add_test(bits, memory_runs_out);

@@ -85,10 +85,34 @@ START_TEST(saved_and_restored) {
 }
 END_TEST
 
+START_TEST(motion_is_awaited) {
+  world a, b;
+  open_clouds(&a, &methods[_i], 2, 1, 0);
+  open_clouds(&b, &methods[_i], 2, 1, 0);
+  ck_ok(&a, mpm_stepper_set_motion(a.stepper, a.set[1], prescribed_turn, a.set[1]));
+  for (int32_t i = 0; i < 3; ++i) world_step(&a, 1e-3);
+  for (int32_t way = 0; way < 3; ++way) {
+    world_copy(way == 2 ? &b : &a, &b); /* way 2: what awaits it is saved, and loaded again */
+    const uint64_t was = world_hash(&b);
+    ck_refused(&b, mpm_step(b.stepper, 1e-3, NULL), MPM_E_STATE,
+               "prescribed particles of set 1 had a motion callback when the state was saved");
+    ck_assert(world_hash(&b) == was);
+    if (way) continue;
+    ck_ok(&b, mpm_stepper_set_motion(b.stepper, b.set[1], NULL, NULL));
+    world_step(&b, 1e-3); /* at their last velocities */
+  }
+  ck_ok(&b, mpm_stepper_set_motion(b.stepper, b.set[1], prescribed_turn, b.set[1]));
+  for (int32_t i = 0; i < 3; ++i) world_step(&a, 1e-3), world_step(&b, 1e-3);
+  ck_assert(world_hash(&a) == world_hash(&b));
+  world_close(&a), world_close(&b);
+}
+END_TEST
+
 TCase *prescribed_state_case(void) {
   TCase *tc = tcase_create("state");
   tcase_set_timeout(tc, 120);
   tcase_add_loop_test(tc, motions_that_fail, 0, METHODS);
   tcase_add_loop_test(tc, saved_and_restored, 0, METHODS);
+  tcase_add_loop_test(tc, motion_is_awaited, 0, METHODS);
   return tc;
 }

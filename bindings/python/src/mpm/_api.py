@@ -1820,8 +1820,9 @@ gives to other particles is ignored. NULL takes the callback away: the particles
 
 On its prescribed axes a particle moves by dt u and ends with the velocity u, with every transfer; the nodes to which
 it gives mass move with u too, or with the mean of several by that mass. On other axes, and in deformation and stress,
-it is a particle like others. MPM_NONFINITE names the particle. The host sets the callback again after it has loaded a
-state. MPM_E_NOT_FOUND: the set is not in this stepper.""",
+it is a particle like others. MPM_NONFINITE names the particle. A state does not hold the callback: after one has been
+loaded that had it, no step is made (MPM_E_STATE) until it has been set, before loading or after, or has been answered
+by NULL. MPM_E_NOT_FOUND: the set is not in this stepper.""",
     "mpm_stepper_set_wall": """mpm_status mpm_stepper_set_wall(mpm_stepper *stepper, int32_t face, int32_t kind, double friction)
 
 Sets what a face (MPM_X_MIN to MPM_Z_MAX) does: kind is one of MPM_WALL_NONE to MPM_WALL_FRICTION_NODES. friction is
@@ -2022,7 +2023,8 @@ Takes an obstacle out, and what it has reported. MPM_E_NOT_FOUND: it is not in t
     "mpm_obstacle_set_motion": """mpm_status mpm_obstacle_set_motion(mpm_obstacle *obstacle, mpm_motion_fn fn, void *user)
 
 Sets how an obstacle moves in each step, for MPM_MOTION_PRESCRIBED (MPM_E_UNSUPPORTED with others). NULL: it keeps its
-velocities. The host sets it again for an obstacle that it makes for a loaded state. MPM_E_STATE during a staged step.""",
+velocities. A state does not hold it: after one has been loaded that had it, no step is made (MPM_E_STATE) until it
+has been set, before loading or after, or has been answered by NULL. MPM_E_STATE during a staged step.""",
     "mpm_obstacle_set_contact": """mpm_status mpm_obstacle_set_contact(mpm_obstacle *obstacle, const mpm_contact_desc *contact)
 
 Sets how an obstacle meets the material, as mpm_obstacle_desc.contact does. MPM_E_ARG: a value is bad; nothing is

@@ -2586,8 +2586,9 @@ extern "C" {
     ///
     /// On its prescribed axes a particle moves by dt u and ends with the velocity u, with every transfer; the nodes to
     /// which it gives mass move with u too, or with the mean of several by that mass. On other axes, and in deformation
-    /// and stress, it is a particle like others. MPM_NONFINITE names the particle. The host sets the callback again after
-    /// it has loaded a state. MPM_E_NOT_FOUND: the set is not in this stepper.
+    /// and stress, it is a particle like others. MPM_NONFINITE names the particle. A state does not hold the callback:
+    /// after one has been loaded that had it, no step is made (MPM_E_STATE) until it has been set, before loading or
+    /// after, or has been answered by NULL. MPM_E_NOT_FOUND: the set is not in this stepper.
     pub fn mpm_stepper_set_motion(
         stepper: *mut mpm_stepper,
         particles: *mut mpm_particles,
@@ -2893,8 +2894,8 @@ extern "C" {
     ) -> mpm_status;
 
     /// Sets how an obstacle moves in each step, for MPM_MOTION_PRESCRIBED (MPM_E_UNSUPPORTED with others). NULL: it keeps
-    /// its velocities. The host sets it again for an obstacle that it makes for a loaded state. MPM_E_STATE during a
-    /// staged step.
+    /// its velocities. A state does not hold it: after one has been loaded that had it, no step is made (MPM_E_STATE)
+    /// until it has been set, before loading or after, or has been answered by NULL. MPM_E_STATE during a staged step.
     pub fn mpm_obstacle_set_motion(
         obstacle: *mut mpm_obstacle,
         r#fn: mpm_motion_fn,
