@@ -49,8 +49,9 @@ MPMI_INLINE void store_columns(int32_t dim, int32_t part, const mpmi_node *colum
   for (int32_t k = 0; k < dim; ++k) mpmi_store4(to[k] + 4 * p, mpmi_node_low(part, column[k]));
 }
 
-MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W, int64_t p,
-                                 const double *tile, mpmi_gathered *out) {
+MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W,
+                                 const double *inverse_spacing, int64_t p, const double *tile,
+                                 mpmi_gathered *out) {
   const int32_t values = mpmi_taken_values(mpmi_gather_takes(dim, form)), mls = form == MPMI_GATHER_MLS;
   const int32_t affine = form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE;
   const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW, part = values == 8 ? MPMI_HALF : MPMI_LOW;
@@ -69,7 +70,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
         const mpmi_node vi = mpmi_node_load(all, node + k * values);
         add(all, mls, width, k, W->w[last][k][p], vi, &rv, &rM);
-        if (!mls) add_slope(part, k, W->g[last][k][p], vi, &rL);
+        if (!mls) add_slope(part, k, mpmi_gradient(width, W, inverse_spacing, last, k, p), vi, &rL);
         if (affine) add_slope(part, k, W->u[last][k][p], vi, &rM);
       }
       if (dim == 1) {
@@ -78,7 +79,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       }
       const double w = W->w[mid][j][p];
       add(all, mls, width, j, w, rv, &pv, &pM[mid]);
-      if (!mls) add_slope(part, j, W->g[mid][j][p], rv, &pL[mid]);
+      if (!mls) add_slope(part, j, mpmi_gradient(width, W, inverse_spacing, mid, j, p), rv, &pL[mid]);
       if (!mls) add_slope(part, j, w, rL, &pL[last]);
       if (affine) add_slope(part, j, W->u[mid][j][p], rv, &pM[mid]);
       if (affine || mls) add_slope(part, j, w, rM, &pM[last]);
@@ -90,7 +91,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
     }
     const double w = W->w[0][i][p];
     add(all, mls, width, i, w, pv, &v, &M[0]);
-    if (!mls) add_slope(part, i, W->g[0][i][p], pv, &L[0]);
+    if (!mls) add_slope(part, i, mpmi_gradient(width, W, inverse_spacing, 0, i, p), pv, &L[0]);
     if (affine) add_slope(part, i, W->u[0][i][p], pv, &M[0]);
     for (int32_t k = 1; k < dim; ++k) {
       if (!mls) add_slope(part, i, w, pL[k], &L[k]);
@@ -165,12 +166,14 @@ MPMI_INLINE int32_t has_hole(const double *volume, int64_t n) {
   return !(mpmi_lanes_smallest(smallest) > 0.0);
 }
 
-/* Takes the weight from holes, of whose nodes nothing is known. */
-MPMI_INLINE void mask_holes(int32_t width, int32_t form, const double *volume, int64_t n, mpmi_weights *W) {
+/* Takes the weight from holes, of whose nodes nothing is known. With two nodes on an axis gradients are not in
+ * W, and the weights of all axes go. */
+MPMI_INLINE void mask_holes(int32_t dim, int32_t width, int32_t form, const double *volume, int64_t n,
+                            mpmi_weights *W) {
   for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
       const double live = volume[p] > 0.0 ? 1.0 : 0.0;
-      W->w[0][k][p] *= live;
-      if (form != MPMI_GATHER_MLS) W->g[0][k][p] *= live;
+      for (int32_t a = 0; a < (width > 2 ? 1 : dim); ++a) W->w[a][k][p] *= live;
+      if (width > 2 && form != MPMI_GATHER_MLS) W->g[0][k][p] *= live;
       if (form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE) W->u[0][k][p] *= live;
     }
 }
@@ -179,16 +182,18 @@ MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, const mp
                               int64_t count) {
   mpmi_weights W;
   mpmi_gathered out;
+  double inverse_spacing[3] = {0.0, 0.0, 0.0};
+  for (int32_t k = 0; k < dim; ++k) inverse_spacing[k] = job->axis[k].inverse_spacing;
   mpmi_made made = {mpmi_nothing_moved(), mpmi_nothing_deformed()};
   for (int64_t s = 0; s < count; s += MPMI_CHUNK) {
     const int64_t n = count - s < MPMI_CHUNK ? count - s : MPMI_CHUNK;
     job->weights(job->axis, job->need, &job->points, begin + s, n, &W);
     if (has_hole(job->initial_volume + begin + s, n))
-      mask_holes(width, form, job->initial_volume + begin + s, n, &W);
+      mask_holes(dim, width, form, job->initial_volume + begin + s, n, &W);
     const int64_t ahead = mpmi_ahead(&job->streams, begin + s);
     for (int64_t p = 0; p < n; ++p) {
       mpmi_prefetch(&job->streams, ahead, p);
-      gather_particle(dim, width, form, &W, p, job->tile, &out);
+      gather_particle(dim, width, form, &W, inverse_spacing, p, job->tile, &out);
     }
     for (int64_t q = 0; q < mpmi_whole_chunks(n); q += MPMI_LANES)
       hand_on(dim, width, form, job, q, s + q, &W, &out, &made);

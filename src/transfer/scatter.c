@@ -56,16 +56,18 @@ MPMI_INLINE void scatter_linear(int32_t dim, int32_t width, const mpmi_weights *
 }
 
 /* Returns the second weights of node k of an axis: that of the momentum and that of the force. */
-MPMI_INLINE mpmi_pair second(int32_t affine, const mpmi_weights *W, int32_t axis, int32_t k, int64_t p) {
-  return mpmi_pair_of(affine ? W->u[axis][k][p] : W->g[axis][k][p], W->g[axis][k][p]);
+MPMI_INLINE mpmi_pair second(int32_t width, int32_t affine, const mpmi_weights *W, const double *slope,
+                             int32_t axis, int32_t k, int64_t p) {
+  const double g = mpmi_gradient(width, W, slope, axis, k, p);
+  return mpmi_pair_of(affine ? W->u[axis][k][p] : g, g);
 }
 
 /* Returns a + second weight * column; with 4 values there is only the momentum's. */
-MPMI_INLINE mpmi_node add_second(int32_t values, int32_t part, mpmi_node a, int32_t affine,
-                                 const mpmi_weights *W, int32_t axis, int32_t k, int64_t p,
-                                 mpmi_node column) {
+MPMI_INLINE mpmi_node add_second(int32_t width, int32_t values, int32_t part, mpmi_node a, int32_t affine,
+                                 const mpmi_weights *W, const double *inverse_spacing, int32_t axis,
+                                 int32_t k, int64_t p, mpmi_node column) {
   if (values == 4) return mpmi_node_fma(part, a, W->u[axis][k][p], column);
-  return mpmi_node_fma_pair(part, a, second(affine, W, axis, k, p), column);
+  return mpmi_node_fma_pair(part, a, second(width, affine, W, inverse_spacing, axis, k, p), column);
 }
 
 MPMI_INLINE int32_t is_affine(int32_t form) {
@@ -90,7 +92,8 @@ MPMI_INLINE int32_t part_of(int32_t form) {
 /* Scatters mass, momentum and force, or with 4 values mass and affine momentum. Without an affine part the
  * columns have nothing to give to momentum. */
 MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W,
-                                     int64_t p, const mpmi_first_order *of, double *MPMI_APART stencil) {
+                                     const double *inverse_spacing, int64_t p, const mpmi_first_order *of,
+                                     double *MPMI_APART stencil) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
   const int32_t values = form < MPMI_SCATTER_8 ? 4 : 8, affine = is_affine(form);
   const int32_t all = all_of(form), part = part_of(form);
@@ -105,7 +108,8 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t form, c
     if (dim < 3 && i > 0) break;
     if (dim == 3) {
       const double w = W->w[0][i][p];
-      plane = add_second(values, part, mpmi_node_scale(all, w, a), affine, W, 0, i, p, column[0]);
+      plane = add_second(width, values, part, mpmi_node_scale(all, w, a), affine, W, inverse_spacing, 0, i, p,
+                         column[0]);
       plane_1 = mpmi_node_scale(part, w, column[1]);
       plane_2 = mpmi_node_scale(part, w, column[2]);
     }
@@ -113,30 +117,33 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t form, c
       if (dim < 2 && j > 0) break;
       if (dim >= 2) {
         const double w = W->w[dim - 2][j][p];
-        value = add_second(values, part, mpmi_node_scale(all, w, plane), affine, W, dim - 2, j, p, plane_1);
+        value = add_second(width, values, part, mpmi_node_scale(all, w, plane), affine, W, inverse_spacing,
+                           dim - 2, j, p, plane_1);
         slope = mpmi_node_scale(part, w, plane_2);
       }
       double *node = stencil + values * (i * edge + j) * (dim == 1 ? 0 : edge);
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
         mpmi_node q = mpmi_node_load(all, node + values * k);
         q = mpmi_node_fma(all, q, W->w[last][k][p], value);
-        mpmi_node_store(all, node + values * k, add_second(values, part, q, affine, W, last, k, p, slope));
+        mpmi_node_store(all, node + values * k,
+                        add_second(width, values, part, q, affine, W, inverse_spacing, last, k, p, slope));
       }
     }
   }
 }
 
 /* Returns a + second weight * column of momentum and force together. */
-MPMI_INLINE mpmi_v4 add_flat_second(mpmi_v4 a, int32_t affine, const mpmi_weights *W, int32_t axis, int32_t k,
-                                    int64_t p, mpmi_v4 column) {
-  const double g = W->g[axis][k][p];
+MPMI_INLINE mpmi_v4 add_flat_second(int32_t width, mpmi_v4 a, int32_t affine, const mpmi_weights *W,
+                                    const double *inverse_spacing, int32_t axis, int32_t k, int64_t p,
+                                    mpmi_v4 column) {
+  const double g = mpmi_gradient(width, W, inverse_spacing, axis, k, p);
   return affine ? mpmi_fma_pair4(a, W->u[axis][k][p], g, column) : mpmi_fma4(a, g, column);
 }
 
 /* Scatters momentum and force of 1-D or 2-D to the nodes of a stencil, and mass to theirs, row by row. */
-MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t affine, const mpmi_weights *W, int64_t p,
-                              const mpmi_first_order *of, double mass, double *MPMI_APART stencil,
-                              double *MPMI_APART masses) {
+MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t affine, const mpmi_weights *W,
+                              const double *inverse_spacing, int64_t p, const mpmi_first_order *of,
+                              double mass, double *MPMI_APART stencil, double *MPMI_APART masses) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
   const mpmi_v4 a = mpmi_load4(of->a + 4 * p), column = mpmi_load4(of->column[0] + 4 * p);
   mpmi_v4 value = a, slope = mpmi_load4(of->column[last] + 4 * p);
@@ -148,14 +155,14 @@ MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t affine, const 
     if (dim < 2 && j > 0) break;
     if (dim == 2) {
       const double w = W->w[0][j][p];
-      value = add_flat_second(mpmi_scale4(w, a), affine, W, 0, j, p, column);
+      value = add_flat_second(width, mpmi_scale4(w, a), affine, W, inverse_spacing, 0, j, p, column);
       slope = mpmi_scale4(w, step);
       row_mass = w * mass;
     }
     double *node = stencil + 4 * j * edge, *row = masses + j * edge;
     MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
       const mpmi_v4 q = mpmi_fma4(mpmi_load4(node + 4 * k), W->w[last][k][p], value);
-      mpmi_store4(node + 4 * k, add_flat_second(q, affine, W, last, k, p, slope));
+      mpmi_store4(node + 4 * k, add_flat_second(width, q, affine, W, inverse_spacing, last, k, p, slope));
     }
     mpmi_store4(row, mpmi_fma4(mpmi_load4(row), row_mass, weights));
   }
@@ -341,6 +348,8 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
   const mpmi_stress_rows stress = stress_rows(dim, job);
   mpmi_weights W;
   mpmi_first_order of;
+  double inverse_spacing[3] = {0.0, 0.0, 0.0};
+  for (int32_t k = 0; k < dim; ++k) inverse_spacing[k] = job->axis[k].inverse_spacing;
   for (int64_t s = begin; s < end; s += MPMI_CHUNK) {
     const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
     job->weights(job->axis, job->need, &job->points, s, n, &W);
@@ -358,9 +367,10 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
       else if (form == MPMI_SCATTER_4_AFFINE)
         scatter_linear(dim, width, &W, p, &of, stencil);
       else if (is_flat(form))
-        scatter_flat(dim, width, is_affine(form), &W, p, &of, job->mass[s + p], stencil, masses + W.node[p]);
+        scatter_flat(dim, width, is_affine(form), &W, inverse_spacing, p, &of, job->mass[s + p], stencil,
+                     masses + W.node[p]);
       else
-        scatter_first_order(dim, width, form, &W, p, &of, stencil);
+        scatter_first_order(dim, width, form, &W, inverse_spacing, p, &of, stencil);
     }
   }
 }

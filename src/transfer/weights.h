@@ -47,12 +47,19 @@ enum {
   MPMI_NEED_MOMENT = 2,   /* u and inverse_moment */
   MPMI_NEED_MLS = 4,      /* g, u and inverse_moment, with g = u / D */
   MPMI_NO_PLACE = 8,      /* do not find node: the particles may lie anywhere */
-  MPMI_NO_FIRST = 16      /* first need not be kept, beside gradients */
+  MPMI_NO_FIRST = 16      /* beside gradients: first need not be kept, nor what mpmi_gradient() knows */
 };
 
 /* Computes the weights of n particles (MPMI_CHUNK of them) along all axes. Each basis has such a function for
  * each dim; everything else is common to all. */
 typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,
                                 int64_t n, mpmi_weights *out);
+
+/* Returns the gradient along an axis at node k of a stencil. With two nodes, on the linear basis, it is the same
+ * for all particles. */
+MPMI_INLINE double mpmi_gradient(int32_t width, const mpmi_weights *W, const double *inverse_spacing,
+                                 int32_t axis, int32_t k, int64_t p) {
+  return width > 2 ? W->g[axis][k][p] : k ? inverse_spacing[axis] : -inverse_spacing[axis];
+}
 
 #endif
