@@ -20,6 +20,7 @@ mpmi_light_search mpmi_light_search_of(const mpmi_bound *bound) {
   const mpmi_settings *settings = bound->step->settings;
   const int32_t edge = bound->step->layout->blocks.edge;
   mpmi_light_search s = {.bound = bound,
+                         .ties = mpmi_constraints_of(bound)->tie_count > 0,
                          .throws = settings->desc.scheme == MPM_USL || mpmi_is_affine(settings)};
   for (int32_t face = 0; face < 2 * bound->dim; ++face)
     if (mpmi_wall_kind_of(settings->wall[face].kind)->holds != MPMI_HOLDS_NOTHING)
@@ -61,9 +62,9 @@ static int64_t beside(const mpmi_light_search *s, const spot *of, int32_t d, int
     at[k] = of->at[k] + offset[k];
     within &= (uint32_t)at[k] < (uint32_t)b->edge;
   }
-  if (within) return mover_of(s->bound, of->slot + steps * s->stride[d]);
-  const int64_t near = mpmi_blocks_near(b, of->block, at);
-  return mover_of(s->bound, near >= 0 || !s->periodic ? near : mpmi_blocks_around(b, of->slot, offset));
+  int64_t near = within ? of->slot + steps * s->stride[d] : mpmi_blocks_near(b, of->block, at);
+  if (near < 0 && s->periodic) near = mpmi_blocks_around(b, of->slot, offset);
+  return s->ties ? mover_of(s->bound, near) : near;
 }
 
 int32_t mpmi_light_in_plane(const mpmi_bound *bound, int64_t slot, int32_t face) {
@@ -90,7 +91,7 @@ int32_t mpmi_light_held(const mpmi_light_search *s, int64_t slot) {
 /* Returns the mass of a node with that of the mirror image behind walls, in whose planes a node has half of
  * it: a body on a plane of symmetry moves as one half of the whole. */
 static double whole_mass(const mpmi_light_search *s, int64_t slot) {
-  double mass = mpmi_moving_mass(s->bound, slot);
+  double mass = s->ties ? mpmi_moving_mass(s->bound, slot) : *mpmi_mass(s->bound->values, slot);
   for (int32_t i = 0; i < s->hold_count; ++i)
     if (held_by(s->bound, slot, s->hold[i])) mass *= 2.0;
   return mass;
@@ -107,16 +108,16 @@ static int32_t may_touch(const mpmi_bound *bound, int64_t slot) {
  * the heavy one with which it is bonded. Where bodies touch, a node pushes the other body while it has its
  * own force: there only those go with others that would be thrown, which are few where particles are strained
  * by velocities that they have given, unless their matrices hand the gradient of a node back. */
-static double light_share(const mpmi_light_search *s, int64_t slot) {
+static double light_share(const mpmi_light_search *s, const spot *node) {
   const mpmi_layout *layout = s->bound->step->layout;
-  const mpmi_densities *of = &layout->densities[layout->blocks.body[slot / layout->blocks.nodes]];
+  const mpmi_densities *of = &layout->densities[layout->blocks.body[node->block]];
   const double share = MPMI_LIGHT_SHARE * (of->least / of->most);
-  return !s->throws && may_touch(s->bound, slot) ? fmin(LEAST_SHARE, share) : share;
+  return !s->throws && may_touch(s->bound, node->slot) ? fmin(LEAST_SHARE, share) : share;
 }
 
 static spot spot_of(const mpmi_light_search *s, int64_t slot, double mass) {
   const mpmi_blocks *b = &s->bound->step->layout->blocks;
-  spot of = {.slot = slot, .block = slot / b->nodes, .mass = mass, .share = light_share(s, slot)};
+  spot of = {.slot = slot, .block = slot / b->nodes, .mass = mass};
   int32_t place = (int32_t)(slot - of.block * b->nodes);
   for (int32_t k = s->bound->dim - 1; k >= 0; --k) {
     of.at[k] = place % b->edge;
@@ -128,7 +129,8 @@ static spot spot_of(const mpmi_light_search *s, int64_t slot, double mass) {
 /* Returns 1 for a node that has hardly any mass beside a neighbour's. */
 static int32_t is_light(const mpmi_light_search *s, int64_t slot, double mass) {
   if (mass > s->bound->step->layout->light_cut) return 0;
-  const spot of = spot_of(s, slot, mass);
+  spot of = spot_of(s, slot, mass);
+  of.share = light_share(s, &of);
   for (int32_t d = 0; d < s->first[s->bound->dim]; ++d) {
     const int64_t near = beside(s, &of, d, 1);
     if (near >= 0 && mass <= of.share * whole_mass(s, near)) return 1;
@@ -173,7 +175,8 @@ void mpmi_light_find_lines(const mpmi_light_search *s, mpmi_light_node *node) {
   node->count = 0;
   const double mass = whole_mass(s, node->slot);
   if (mass > s->bound->step->layout->light_cut) return;
-  const spot of = spot_of(s, node->slot, mass);
+  spot of = spot_of(s, node->slot, mass);
+  of.share = light_share(s, &of);
   ring near;
   for (int32_t lone = 0; lone < 2; ++lone)
     for (int32_t axes = 1; axes <= s->bound->dim; ++axes) {

@@ -78,26 +78,26 @@ static int32_t borne_of(const light_job *job, const mpmi_light_node *node) {
   return borne;
 }
 
-/* Returns a component of what the leaders of a node have of a vector: none where a wall will hold it. */
-static double of_leaders(const mpmi_bound *bound, const mpmi_light_node *node,
-                         double *(*vector)(const mpmi_nodal *, int64_t), int32_t c) {
-  const mpmi_leader *leader = leaders_of(bound, node);
-  double sum = 0.0;
-  for (int32_t k = 0; k < node->count; ++k)
-    if (!(leader[k].held >> c & 1)) sum += leader[k].share * vector(bound->values, leader[k].slot)[c];
-  return sum;
+/* Adds to sum[3] a share of what a leader has of a vector: nothing where a wall will hold it. */
+static void add_share(const mpmi_leader *of, const double *vector, int32_t dim, double *sum) {
+  for (int32_t c = 0; c < dim; ++c)
+    if (!(of->held >> c & 1)) sum[c] += of->share * vector[c];
 }
 
 /* Without a line for its velocity a node keeps its own, and all where a wall bears it. */
 static void look(const light_job *job, mpmi_light_node *node) {
   const mpmi_bound *bound = job->bound;
+  const mpmi_leader *leader = leaders_of(bound, node);
   const int32_t both = mpmi_has_increments(bound->values), borne = borne_of(job, node);
+  double led[3] = {0.0, 0.0, 0.0}, led_gain[3] = {0.0, 0.0, 0.0};
+  for (int32_t k = 0; k < node->count; ++k) {
+    add_share(&leader[k], mpmi_velocity(bound->values, leader[k].slot), bound->dim, led);
+    if (both) add_share(&leader[k], mpmi_increment(bound->values, leader[k].slot), bound->dim, led_gain);
+  }
   for (int32_t c = 0; c < bound->dim; ++c) {
     const double before = node->before[c], gain = node->gain[c];
-    const double led = of_leaders(bound, node, mpmi_velocity, c);
-    const double led_gain = both ? of_leaders(bound, node, mpmi_increment, c) : 0.0;
-    node->led_gain[c] = borne >> c & 1 ? gain : led_gain;
-    node->led_before[c] = borne >> c & 1 || node->lone ? before : led - led_gain;
+    node->led_gain[c] = borne >> c & 1 ? gain : led_gain[c];
+    node->led_before[c] = borne >> c & 1 || node->lone ? before : led[c] - led_gain[c];
   }
 }
 
