@@ -1,6 +1,6 @@
 /* Who leads a light node: heavier ones beside it, along lines of nodes that have a second heavy one, and how
  * much of its motion is each one's (docs/theory.md, 7.1). */
-#include "boundary/light_nodes.h"
+#include "boundary/light_leaders.h"
 #include "contact/contact.h"
 
 #include <math.h>
@@ -41,7 +41,7 @@ mpmi_light_search mpmi_light_search_of(const mpmi_bound *bound) {
   return s;
 }
 
-/* ---- nodes beside, and masses ----------------------------------------------------------------------------- */
+/* ---- nodes beside, and masses -------------------------------------------------------------------------- */
 /* Returns the node that moves for the one in a slot: itself, or the master of an image; -1 where there is
  * none or it is a mirror image. */
 static int64_t mover_of(const mpmi_bound *bound, int64_t slot) {
@@ -97,7 +97,7 @@ static double whole_mass(const mpmi_light_search *s, int64_t slot) {
   return mass;
 }
 
-/* ---- light or not ----------------------------------------------------------------------------------------- */
+/* ---- light or not -------------------------------------------------------------------------------------- */
 /* Returns 1 where contact may take the force on a node. */
 static int32_t may_touch(const mpmi_bound *bound, int64_t slot) {
   const mpmi_contact_search search = {bound->step, bound->nodes, bound->values, &bound->nodes->contact};
@@ -138,7 +138,7 @@ static int32_t is_light(const mpmi_light_search *s, int64_t slot, double mass) {
   return 0;
 }
 
-/* ---- lines ------------------------------------------------------------------------------------------------ */
+/* ---- lines --------------------------------------------------------------------------------------------- */
 /* What is beside a node, direction by direction. */
 typedef struct ring {
   int64_t slot[MPMI_DIRECTIONS];
@@ -152,9 +152,9 @@ static void look_along(const mpmi_light_search *s, const spot *of, int32_t axes,
   }
 }
 
-/* Returns, as bits, the lines along so many axes on which the next node is heavy and not light itself, and with
- * it, or not (lone), the one behind. Without it the force is moved aside, which turns the body: that is left to
- * nodes with hardly any. */
+/* Returns, as bits, the lines along so many axes on which the next node is heavy and not light itself, and
+ * with it, or not (lone), the one behind. Without it the force is moved aside, which turns the body: that is
+ * left to nodes with hardly any. */
 static uint32_t lines_along(const mpmi_light_search *s, const spot *of, int32_t axes, int32_t lone,
                             const ring *near) {
   const double share = lone ? fmin(LEAST_SHARE, of->share) : of->share;

@@ -3,7 +3,7 @@
  * mass would be as large as the mass is small. A light node goes with heavier ones, by linear extrapolation
  * along lines of nodes, and gives them its force by the transposed rule (docs/theory.md, 7.1): a particle
  * that hardly reaches into a cell strains and pulls as if it had stayed in the cell beside. */
-#include "boundary/light_nodes.h"
+#include "boundary/light_leaders.h"
 
 #include <float.h>
 
@@ -16,7 +16,7 @@ typedef struct light_job {
   mpmi_light_search search;
 } light_job;
 
-/* ---- finding ---------------------------------------------------------------------------------------------- */
+/* ---- finding ------------------------------------------------------------------------------------------- */
 /* The list holds slots of nodes with mass. Returns the node that moves for one of them: itself if it is free,
  * its master if that has no mass and this image is the first that has; else -1, because another entry of the
  * list stands for the master. */
@@ -55,7 +55,7 @@ static void find(const light_job *job, mpmi_light_node *node) {
   }
 }
 
-/* ---- rounds ----------------------------------------------------------------------------------------------- */
+/* ---- rounds -------------------------------------------------------------------------------------------- */
 static const mpmi_leader *leaders_of(const mpmi_bound *bound, const mpmi_light_node *node) {
   return bound->nodes->leader + node->first;
 }
@@ -136,7 +136,7 @@ static void follow(mpmi_bound *bound, const mpmi_light_node *node) {
     set(bound, node->slot, c, node->before[c] + node->gain[c], node->gain[c]);
 }
 
-/* ---- all of them ------------------------------------------------------------------------------------------ */
+/* ---- all of them --------------------------------------------------------------------------------------- */
 static mpmi_share share_of(const light_job *job, int64_t k) {
   return mpmi_share_of(job->bound->step->settings, job->bound->nodes->light_count, k);
 }

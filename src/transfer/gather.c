@@ -166,8 +166,8 @@ MPMI_INLINE int32_t has_hole(const double *volume, int64_t n) {
   return !(mpmi_lanes_smallest(smallest) > 0.0);
 }
 
-/* Takes the weight from holes, of whose nodes nothing is known. With two nodes on an axis gradients are not in
- * W, and the weights of all axes go. */
+/* Takes the weight from holes, of whose nodes nothing is known. With two nodes on an axis gradients are not
+ * in W, and the weights of all axes go. */
 MPMI_INLINE void mask_holes(int32_t dim, int32_t width, int32_t form, const double *volume, int64_t n,
                             mpmi_weights *W) {
   for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {

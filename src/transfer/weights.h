@@ -55,8 +55,8 @@ enum {
 typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,
                                 int64_t n, mpmi_weights *out);
 
-/* Returns the gradient along an axis at node k of a stencil. With two nodes, on the linear basis, it is the same
- * for all particles. */
+/* Returns the gradient along an axis at node k of a stencil. With two nodes, on the linear basis, it is the
+ * same for all particles. */
 MPMI_INLINE double mpmi_gradient(int32_t width, const mpmi_weights *W, const double *inverse_spacing,
                                  int32_t axis, int32_t k, int64_t p) {
   return width > 2 ? W->g[axis][k][p] : k ? inverse_spacing[axis] : -inverse_spacing[axis];

@@ -1,7 +1,6 @@
-/* Light nodes and those that lead them, as the two files know them: light_leaders.c finds who leads, and
- * light_nodes.c lets light nodes follow. */
-#ifndef MPMI_LIGHT_NODES_H
-#define MPMI_LIGHT_NODES_H
+/* Who leads light nodes, which light_nodes.c lets follow them. */
+#ifndef MPMI_LIGHT_LEADERS_H
+#define MPMI_LIGHT_LEADERS_H
 
 #include "boundary/bound.h"
 
