@@ -1762,7 +1762,7 @@ export class Obstacle implements Handle {
   /**
    * Sets how an obstacle moves in each step, for MPM_MOTION_PRESCRIBED (MPM_E_UNSUPPORTED with others). NULL:
    * it keeps its velocities. A state does not hold it: after one has been loaded that had it, no step is made
-   * (MPM_E_STATE) until it has been set, before loading or after, or has been answered by NULL. MPM_E_STATE
+   * (MPM_E_STATE) until it has been set, before loading or after, or answered by NULL after it. MPM_E_STATE
    * during a staged step.
    */
   setMotion(motion: MotionFunction | null): void;
@@ -2048,7 +2048,7 @@ export class Stepper implements Handle {
    * nodes to which it gives mass move with u too, or with the mean of several by that mass. On other axes,
    * and in deformation and stress, it is a particle like others. MPM_NONFINITE names the particle. A state
    * does not hold the callback: after one has been loaded that had it, no step is made (MPM_E_STATE) until it
-   * has been set, before loading or after, or has been answered by NULL. MPM_E_NOT_FOUND: the set is not in
+   * has been set, before loading or after, or answered by NULL after it. MPM_E_NOT_FOUND: the set is not in
    * this stepper.
    */
   setMotion(set: Particles, run: ParticleFunction | null): this;
@@ -2080,7 +2080,8 @@ export class Stepper implements Handle {
    * - MPM_CANCELLED: the progress callback ended the step.
    * - MPM_E_ARG: dt is not finite or not > 0.
    * - MPM_E_CALLBACK: a callback or the host's executor failed.
-   * - MPM_E_STATE: a view is out, a staged step is under way, or a set has values to be repaired.
+   * - MPM_E_STATE: a view is out, a staged step is under way, a set has values to be repaired, or the state
+   *   that was loaded had a motion callback that is not set.
    */
   step(dt: number): StepInfo;
   /**

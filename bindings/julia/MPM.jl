@@ -1876,8 +1876,8 @@ gives to other particles is ignored. NULL takes the callback away: the particles
 On its prescribed axes a particle moves by dt u and ends with the velocity u, with every transfer; the nodes to which
 it gives mass move with u too, or with the mean of several by that mass. On other axes, and in deformation and stress,
 it is a particle like others. MPM_NONFINITE names the particle. A state does not hold the callback: after one has been
-loaded that had it, no step is made (MPM_E_STATE) until it has been set, before loading or after, or has been answered
-by NULL. MPM_E_NOT_FOUND: the set is not in this stepper.
+loaded that had it, no step is made (MPM_E_STATE) until it has been set, before loading or after, or answered by NULL
+after it. MPM_E_NOT_FOUND: the set is not in this stepper.
 """
 function mpm_stepper_set_motion(stepper, particles, mean_velocity, user)
     return ccall((:mpm_stepper_set_motion, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_particles}, Ptr{Cvoid}, Ptr{Cvoid}),
@@ -1970,7 +1970,8 @@ NULL; it is filled on success and on failure.
 - MPM_CANCELLED: the progress callback ended the step.
 - MPM_E_ARG: dt is not finite or not > 0.
 - MPM_E_CALLBACK: a callback or the host's executor failed.
-- MPM_E_STATE: a view is out, a staged step is under way, or a set has values to be repaired.
+- MPM_E_STATE: a view is out, a staged step is under way, a set has values to be repaired, or the state that was
+  loaded had a motion callback that is not set.
 """
 function mpm_step(stepper, dt, info)
     return ccall((:mpm_step, libmpm), Int32, (Ptr{mpm_stepper}, Float64, Ptr{mpm_step_info}), stepper, dt, info)
@@ -2241,7 +2242,7 @@ end
 """
 Sets how an obstacle moves in each step, for MPM_MOTION_PRESCRIBED (MPM_E_UNSUPPORTED with others). NULL: it keeps its
 velocities. A state does not hold it: after one has been loaded that had it, no step is made (MPM_E_STATE) until it
-has been set, before loading or after, or has been answered by NULL. MPM_E_STATE during a staged step.
+has been set, before loading or after, or answered by NULL after it. MPM_E_STATE during a staged step.
 """
 function mpm_obstacle_set_motion(obstacle, fn, user)
     return ccall((:mpm_obstacle_set_motion, libmpm), Int32, (Ptr{mpm_obstacle}, Ptr{Cvoid}, Ptr{Cvoid}),

@@ -4,10 +4,11 @@
  *
  * A state holds time, step and the controller's dt, the sets in order of mpm_stepper_add() with every field
  * (library order included, so that continuing is bitwise identical), the sums over steps, and a description
- * of grid, materials and scheme. Callbacks and walls are not in it: the host sets them as before. Loading
- * needs a stepper that is set up alike: same grid, scheme, number of sets, laws and host fields; the
- * particles are replaced, and the sets may be empty. States of all versions from 0.1.0 on load; in those of
- * 0.1.0 sums over steps are 0.
+ * of grid, materials and scheme. Callbacks and walls are not in it: the host sets them as before;
+ * of motion callbacks of sets and obstacles it says that they were there, and no step is made (MPM_E_STATE)
+ * until each is set, or answered by NULL after loading. Loading needs a stepper that is set up alike: same
+ * grid, scheme, number of sets, laws and host fields; the particles are replaced, and the sets may be empty.
+ * States of all versions from 0.1.0 on load; in those of 0.1.0 sums over steps are 0.
  *
  * Of one problem in several parts (parallel.h) each part saves a piece, and all pieces together are the
  * state. Calls that measure or save are then collective: every part makes them, each with a buffer, a path or

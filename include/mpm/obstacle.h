@@ -119,7 +119,7 @@ MPM_API mpm_status mpm_stepper_remove_obstacle(mpm_stepper *stepper, mpm_obstacl
 
 /** Sets how an obstacle moves in each step, for MPM_MOTION_PRESCRIBED (MPM_E_UNSUPPORTED with others). NULL:
  * it keeps its velocities. A state does not hold it: after one has been loaded that had it, no step is made
- * (MPM_E_STATE) until it has been set, before loading or after, or has been answered by NULL. MPM_E_STATE
+ * (MPM_E_STATE) until it has been set, before loading or after, or answered by NULL after it. MPM_E_STATE
  * during a staged step. */
 MPM_API mpm_status mpm_obstacle_set_motion(mpm_obstacle *obstacle, mpm_motion_fn fn, void *user);
 

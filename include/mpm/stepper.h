@@ -297,7 +297,7 @@ MPM_API mpm_status mpm_stepper_set_time(mpm_stepper *stepper, double t, int64_t 
  * nodes to which it gives mass move with u too, or with the mean of several by that mass. On other axes, and
  * in deformation and stress, it is a particle like others. MPM_NONFINITE names the particle. A state does not
  * hold the callback: after one has been loaded that had it, no step is made (MPM_E_STATE) until it has been
- * set, before loading or after, or has been answered by NULL. MPM_E_NOT_FOUND: the set is not in this
+ * set, before loading or after, or answered by NULL after it. MPM_E_NOT_FOUND: the set is not in this
  * stepper.
  */
 MPM_API mpm_status mpm_stepper_set_motion(mpm_stepper *stepper, mpm_particles *particles,
@@ -354,7 +354,8 @@ MPM_API mpm_status mpm_stable_dt(mpm_stepper *stepper, double *dt);
  * - MPM_CANCELLED: the progress callback ended the step.
  * - MPM_E_ARG: dt is not finite or not > 0.
  * - MPM_E_CALLBACK: a callback or the host's executor failed.
- * - MPM_E_STATE: a view is out, a staged step is under way, or a set has values to be repaired.
+ * - MPM_E_STATE: a view is out, a staged step is under way, a set has values to be repaired, or the state
+ *   that was loaded had a motion callback that is not set.
  */
 MPM_API mpm_status mpm_step(mpm_stepper *stepper, double dt, mpm_step_info *info);
 

@@ -11,6 +11,9 @@
  * margin of parts, in mpmi_layout_create, is for so many. */
 enum { ROUNDS = 2 };
 
+/* To wake a task costs as much as some of them. */
+enum { FEW_LIGHT_NODES = 64 };
+
 typedef struct light_job {
   mpmi_bound *bound;
   mpmi_light_search search;
@@ -165,7 +168,10 @@ static void look_task(void *data, int64_t k) {
 
 static mpm_status run(light_job *job, mpm_task_fn task) {
   const mpmi_settings *settings = job->bound->step->settings;
-  return mpmi_run_tasks(settings, 0, settings->tasks, task, job);
+  if (job->bound->nodes->light_count >= FEW_LIGHT_NODES)
+    return mpmi_run_tasks(settings, 0, settings->tasks, task, job);
+  for (int64_t k = 0; k < settings->tasks; ++k) task(job, k);
+  return MPM_OK;
 }
 
 static mpm_status find_leaders(light_job *job) {

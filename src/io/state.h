@@ -77,6 +77,8 @@ typedef struct mpmi_state_set_numbers {
   mpmi_adaption_sums adaption; /* the same */
   int64_t has_motion;          /* the same; 1: a callback says how its prescribed particles move */
 } mpmi_state_set_numbers;
+_Static_assert(offsetof(mpmi_state_set_numbers, has_motion) + 8 == sizeof(mpmi_state_set_numbers),
+               "part of the format");
 
 typedef struct mpmi_state_field {
   char name[MPMI_NAME];

@@ -41,6 +41,7 @@ static void let_go(mpm_obstacle *obstacle) {
   obstacle->stepper = NULL;
   obstacle->grid = NULL;
   obstacle->owner = NULL;
+  obstacle->awaits_motion = 0;
 }
 
 mpm_status mpm_stepper_remove_obstacle(mpm_stepper *s, mpm_obstacle *obstacle) {

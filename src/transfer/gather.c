@@ -70,7 +70,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
         const mpmi_node vi = mpmi_node_load(all, node + k * values);
         add(all, mls, width, k, W->w[last][k][p], vi, &rv, &rM);
-        if (!mls) add_slope(part, k, mpmi_gradient(width, W, inverse_spacing, last, k, p), vi, &rL);
+        if (!mls) add_slope(part, k, mpmi_gradient(dim, width, W, inverse_spacing, last, k, p), vi, &rL);
         if (affine) add_slope(part, k, W->u[last][k][p], vi, &rM);
       }
       if (dim == 1) {
@@ -79,7 +79,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       }
       const double w = W->w[mid][j][p];
       add(all, mls, width, j, w, rv, &pv, &pM[mid]);
-      if (!mls) add_slope(part, j, mpmi_gradient(width, W, inverse_spacing, mid, j, p), rv, &pL[mid]);
+      if (!mls) add_slope(part, j, mpmi_gradient(dim, width, W, inverse_spacing, mid, j, p), rv, &pL[mid]);
       if (!mls) add_slope(part, j, w, rL, &pL[last]);
       if (affine) add_slope(part, j, W->u[mid][j][p], rv, &pM[mid]);
       if (affine || mls) add_slope(part, j, w, rM, &pM[last]);
@@ -91,7 +91,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
     }
     const double w = W->w[0][i][p];
     add(all, mls, width, i, w, pv, &v, &M[0]);
-    if (!mls) add_slope(part, i, mpmi_gradient(width, W, inverse_spacing, 0, i, p), pv, &L[0]);
+    if (!mls) add_slope(part, i, mpmi_gradient(dim, width, W, inverse_spacing, 0, i, p), pv, &L[0]);
     if (affine) add_slope(part, i, W->u[0][i][p], pv, &M[0]);
     for (int32_t k = 1; k < dim; ++k) {
       if (!mls) add_slope(part, i, w, pL[k], &L[k]);
@@ -166,14 +166,14 @@ MPMI_INLINE int32_t has_hole(const double *volume, int64_t n) {
   return !(mpmi_lanes_smallest(smallest) > 0.0);
 }
 
-/* Takes the weight from holes, of whose nodes nothing is known. With two nodes on an axis gradients are not
- * in W, and the weights of all axes go. */
+/* Takes the weight from holes, of whose nodes nothing is known: along one axis, or along all where gradients
+ * are alike and stay. */
 MPMI_INLINE void mask_holes(int32_t dim, int32_t width, int32_t form, const double *volume, int64_t n,
                             mpmi_weights *W) {
   for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
       const double live = volume[p] > 0.0 ? 1.0 : 0.0;
-      for (int32_t a = 0; a < (width > 2 ? 1 : dim); ++a) W->w[a][k][p] *= live;
-      if (width > 2 && form != MPMI_GATHER_MLS) W->g[0][k][p] *= live;
+      for (int32_t a = 0; a < (mpmi_alike(dim, width) ? dim : 1); ++a) W->w[a][k][p] *= live;
+      if (!mpmi_alike(dim, width) && form != MPMI_GATHER_MLS) W->g[0][k][p] *= live;
       if (form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE) W->u[0][k][p] *= live;
     }
 }

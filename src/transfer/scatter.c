@@ -56,18 +56,18 @@ MPMI_INLINE void scatter_linear(int32_t dim, int32_t width, const mpmi_weights *
 }
 
 /* Returns the second weights of node k of an axis: that of the momentum and that of the force. */
-MPMI_INLINE mpmi_pair second(int32_t width, int32_t affine, const mpmi_weights *W, const double *slope,
-                             int32_t axis, int32_t k, int64_t p) {
-  const double g = mpmi_gradient(width, W, slope, axis, k, p);
+MPMI_INLINE mpmi_pair second(int32_t dim, int32_t width, int32_t affine, const mpmi_weights *W,
+                             const double *slope, int32_t axis, int32_t k, int64_t p) {
+  const double g = mpmi_gradient(dim, width, W, slope, axis, k, p);
   return mpmi_pair_of(affine ? W->u[axis][k][p] : g, g);
 }
 
 /* Returns a + second weight * column; with 4 values there is only the momentum's. */
-MPMI_INLINE mpmi_node add_second(int32_t width, int32_t values, int32_t part, mpmi_node a, int32_t affine,
-                                 const mpmi_weights *W, const double *inverse_spacing, int32_t axis,
-                                 int32_t k, int64_t p, mpmi_node column) {
+MPMI_INLINE mpmi_node add_second(int32_t dim, int32_t width, int32_t values, int32_t part, mpmi_node a,
+                                 int32_t affine, const mpmi_weights *W, const double *inverse_spacing,
+                                 int32_t axis, int32_t k, int64_t p, mpmi_node column) {
   if (values == 4) return mpmi_node_fma(part, a, W->u[axis][k][p], column);
-  return mpmi_node_fma_pair(part, a, second(width, affine, W, inverse_spacing, axis, k, p), column);
+  return mpmi_node_fma_pair(part, a, second(dim, width, affine, W, inverse_spacing, axis, k, p), column);
 }
 
 MPMI_INLINE int32_t is_affine(int32_t form) {
@@ -108,8 +108,8 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t form, c
     if (dim < 3 && i > 0) break;
     if (dim == 3) {
       const double w = W->w[0][i][p];
-      plane = add_second(width, values, part, mpmi_node_scale(all, w, a), affine, W, inverse_spacing, 0, i, p,
-                         column[0]);
+      plane = add_second(dim, width, values, part, mpmi_node_scale(all, w, a), affine, W, inverse_spacing, 0,
+                         i, p, column[0]);
       plane_1 = mpmi_node_scale(part, w, column[1]);
       plane_2 = mpmi_node_scale(part, w, column[2]);
     }
@@ -117,26 +117,27 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t form, c
       if (dim < 2 && j > 0) break;
       if (dim >= 2) {
         const double w = W->w[dim - 2][j][p];
-        value = add_second(width, values, part, mpmi_node_scale(all, w, plane), affine, W, inverse_spacing,
-                           dim - 2, j, p, plane_1);
+        value = add_second(dim, width, values, part, mpmi_node_scale(all, w, plane), affine, W,
+                           inverse_spacing, dim - 2, j, p, plane_1);
         slope = mpmi_node_scale(part, w, plane_2);
       }
       double *node = stencil + values * (i * edge + j) * (dim == 1 ? 0 : edge);
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
         mpmi_node q = mpmi_node_load(all, node + values * k);
         q = mpmi_node_fma(all, q, W->w[last][k][p], value);
-        mpmi_node_store(all, node + values * k,
-                        add_second(width, values, part, q, affine, W, inverse_spacing, last, k, p, slope));
+        mpmi_node_store(
+            all, node + values * k,
+            add_second(dim, width, values, part, q, affine, W, inverse_spacing, last, k, p, slope));
       }
     }
   }
 }
 
 /* Returns a + second weight * column of momentum and force together. */
-MPMI_INLINE mpmi_v4 add_flat_second(int32_t width, mpmi_v4 a, int32_t affine, const mpmi_weights *W,
-                                    const double *inverse_spacing, int32_t axis, int32_t k, int64_t p,
-                                    mpmi_v4 column) {
-  const double g = mpmi_gradient(width, W, inverse_spacing, axis, k, p);
+MPMI_INLINE mpmi_v4 add_flat_second(int32_t dim, int32_t width, mpmi_v4 a, int32_t affine,
+                                    const mpmi_weights *W, const double *inverse_spacing, int32_t axis,
+                                    int32_t k, int64_t p, mpmi_v4 column) {
+  const double g = mpmi_gradient(dim, width, W, inverse_spacing, axis, k, p);
   return affine ? mpmi_fma_pair4(a, W->u[axis][k][p], g, column) : mpmi_fma4(a, g, column);
 }
 
@@ -155,14 +156,15 @@ MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t affine, const 
     if (dim < 2 && j > 0) break;
     if (dim == 2) {
       const double w = W->w[0][j][p];
-      value = add_flat_second(width, mpmi_scale4(w, a), affine, W, inverse_spacing, 0, j, p, column);
+      value = add_flat_second(dim, width, mpmi_scale4(w, a), affine, W, inverse_spacing, 0, j, p, column);
       slope = mpmi_scale4(w, step);
       row_mass = w * mass;
     }
     double *node = stencil + 4 * j * edge, *row = masses + j * edge;
     MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
       const mpmi_v4 q = mpmi_fma4(mpmi_load4(node + 4 * k), W->w[last][k][p], value);
-      mpmi_store4(node + 4 * k, add_flat_second(width, q, affine, W, inverse_spacing, last, k, p, slope));
+      mpmi_store4(node + 4 * k,
+                  add_flat_second(dim, width, q, affine, W, inverse_spacing, last, k, p, slope));
     }
     mpmi_store4(row, mpmi_fma4(mpmi_load4(row), row_mass, weights));
   }

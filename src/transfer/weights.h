@@ -55,11 +55,15 @@ enum {
 typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,
                                 int64_t n, mpmi_weights *out);
 
-/* Returns the gradient along an axis at node k of a stencil. With two nodes, on the linear basis, it is the
- * same for all particles. */
-MPMI_INLINE double mpmi_gradient(int32_t width, const mpmi_weights *W, const double *inverse_spacing,
-                                 int32_t axis, int32_t k, int64_t p) {
-  return width > 2 ? W->g[axis][k][p] : k ? inverse_spacing[axis] : -inverse_spacing[axis];
+/* Returns 1 where all particles have the same gradients, which W need not have then: with two nodes on an
+ * axis, on the linear basis. On one axis alone a hole has nothing but W's to be without. */
+MPMI_INLINE int32_t mpmi_alike(int32_t dim, int32_t width) {
+  return dim > 1 && width == 2;
+}
+/* Returns the gradient along an axis at node k of a stencil. */
+MPMI_INLINE double mpmi_gradient(int32_t dim, int32_t width, const mpmi_weights *W,
+                                 const double *inverse_spacing, int32_t axis, int32_t k, int64_t p) {
+  return !mpmi_alike(dim, width) ? W->g[axis][k][p] : k ? inverse_spacing[axis] : -inverse_spacing[axis];
 }
 
 #endif

@@ -1,5 +1,7 @@
 /* What transfers conserve: mass, momentum and, with an affine part, angular momentum. */
 #include "exact.h"
+#include "material/deformation.h"
+#include "particles/particles.h"
 
 enum { CLOUD = 300 };
 
@@ -115,6 +117,31 @@ START_TEST(steps_conserve) {
 }
 END_TEST
 
+/* Slots without a particle take nothing from the nodes around them. */
+START_TEST(holes_stay_as_they_are) {
+  static const int32_t bases[] = {MPM_LINEAR, MPM_BSPLINE2, MPM_BSPLINE3};
+  static const int32_t transfers[] = {MPM_FLIP, MPM_APIC, MPM_TPIC};
+  world_desc desc = world_default(1 + _i % 3, 12, 0.1);
+  desc.grid.basis = bases[_i / 3 % 3];
+  desc.stepper.transfer = transfers[_i / 9];
+  world w;
+  mpm_particles *set = world_open(&w, &desc);
+  dice d = {7 + (uint64_t)_i};
+  add_cloud(&w, set, &d, 40, 0.1, 0.3, 0.9, 5.0);
+  for (int32_t step = 0; step < 3; ++step) {
+    world_step(&w, 1e-4);
+    const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+    ck_assert_int_gt(set->slots, set->count);
+    for (int64_t s = 0; s < set->slots; ++s)
+      for (int32_t r = 0; id[s] < 0 && r < w.dim; ++r)
+        for (int32_t c = 0; c < w.dim; ++c)
+          ck_assert_double_eq(mpmi_f64(set, MPMI_F, 0)[mpmi_stored_entry(w.dim, r, c) * set->ld + s],
+                              r == c ? 1.0 : 0.0);
+  }
+  world_close(&w);
+}
+END_TEST
+
 /* Three parts in a row are the step: bit by bit, but to rounding where a whole
  * step fuses force and momentum. */
 START_TEST(parts_are_the_step) {
@@ -203,6 +230,7 @@ END_TEST
 TCase *conservation_case(void) {
   TCase *tc = tcase_create("conservation");
   tcase_set_timeout(tc, 30.0);
+  tcase_add_loop_test(tc, holes_stay_as_they_are, 0, 27);
   tcase_add_loop_test(tc, steps_conserve, 0, 3 * METHODS);
   tcase_add_loop_test(tc, parts_are_the_step, 0, METHODS);
   return tc;

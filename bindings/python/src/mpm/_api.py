@@ -1821,8 +1821,8 @@ gives to other particles is ignored. NULL takes the callback away: the particles
 On its prescribed axes a particle moves by dt u and ends with the velocity u, with every transfer; the nodes to which
 it gives mass move with u too, or with the mean of several by that mass. On other axes, and in deformation and stress,
 it is a particle like others. MPM_NONFINITE names the particle. A state does not hold the callback: after one has been
-loaded that had it, no step is made (MPM_E_STATE) until it has been set, before loading or after, or has been answered
-by NULL. MPM_E_NOT_FOUND: the set is not in this stepper.""",
+loaded that had it, no step is made (MPM_E_STATE) until it has been set, before loading or after, or answered by NULL
+after it. MPM_E_NOT_FOUND: the set is not in this stepper.""",
     "mpm_stepper_set_wall": """mpm_status mpm_stepper_set_wall(mpm_stepper *stepper, int32_t face, int32_t kind, double friction)
 
 Sets what a face (MPM_X_MIN to MPM_Z_MAX) does: kind is one of MPM_WALL_NONE to MPM_WALL_FRICTION_NODES. friction is
@@ -1871,7 +1871,8 @@ NULL; it is filled on success and on failure.
 - MPM_CANCELLED: the progress callback ended the step.
 - MPM_E_ARG: dt is not finite or not > 0.
 - MPM_E_CALLBACK: a callback or the host's executor failed.
-- MPM_E_STATE: a view is out, a staged step is under way, or a set has values to be repaired.""",
+- MPM_E_STATE: a view is out, a staged step is under way, a set has values to be repaired, or the state that was
+  loaded had a motion callback that is not set.""",
     "mpm_advance_desc_init": """mpm_status mpm_advance_desc_init(mpm_advance_desc *desc, uint32_t struct_size)
 
 Fills desc with the defaults; the host must set t_end. struct_size is sizeof(mpm_advance_desc) of the caller; no byte
@@ -2024,7 +2025,7 @@ Takes an obstacle out, and what it has reported. MPM_E_NOT_FOUND: it is not in t
 
 Sets how an obstacle moves in each step, for MPM_MOTION_PRESCRIBED (MPM_E_UNSUPPORTED with others). NULL: it keeps its
 velocities. A state does not hold it: after one has been loaded that had it, no step is made (MPM_E_STATE) until it
-has been set, before loading or after, or has been answered by NULL. MPM_E_STATE during a staged step.""",
+has been set, before loading or after, or answered by NULL after it. MPM_E_STATE during a staged step.""",
     "mpm_obstacle_set_contact": """mpm_status mpm_obstacle_set_contact(mpm_obstacle *obstacle, const mpm_contact_desc *contact)
 
 Sets how an obstacle meets the material, as mpm_obstacle_desc.contact does. MPM_E_ARG: a value is bad; nothing is

@@ -2588,7 +2588,7 @@ extern "C" {
     /// which it gives mass move with u too, or with the mean of several by that mass. On other axes, and in deformation
     /// and stress, it is a particle like others. MPM_NONFINITE names the particle. A state does not hold the callback:
     /// after one has been loaded that had it, no step is made (MPM_E_STATE) until it has been set, before loading or
-    /// after, or has been answered by NULL. MPM_E_NOT_FOUND: the set is not in this stepper.
+    /// after, or answered by NULL after it. MPM_E_NOT_FOUND: the set is not in this stepper.
     pub fn mpm_stepper_set_motion(
         stepper: *mut mpm_stepper,
         particles: *mut mpm_particles,
@@ -2673,7 +2673,8 @@ extern "C" {
     /// - MPM_CANCELLED: the progress callback ended the step.
     /// - MPM_E_ARG: dt is not finite or not > 0.
     /// - MPM_E_CALLBACK: a callback or the host's executor failed.
-    /// - MPM_E_STATE: a view is out, a staged step is under way, or a set has values to be repaired.
+    /// - MPM_E_STATE: a view is out, a staged step is under way, a set has values to be repaired, or the state that was
+    ///   loaded had a motion callback that is not set.
     pub fn mpm_step(stepper: *mut mpm_stepper, dt: f64, info: *mut mpm_step_info) -> mpm_status;
 
     /// Fills desc with the defaults; the host must set t_end. struct_size is sizeof(mpm_advance_desc) of the caller; no
@@ -2895,7 +2896,7 @@ extern "C" {
 
     /// Sets how an obstacle moves in each step, for MPM_MOTION_PRESCRIBED (MPM_E_UNSUPPORTED with others). NULL: it keeps
     /// its velocities. A state does not hold it: after one has been loaded that had it, no step is made (MPM_E_STATE)
-    /// until it has been set, before loading or after, or has been answered by NULL. MPM_E_STATE during a staged step.
+    /// until it has been set, before loading or after, or answered by NULL after it. MPM_E_STATE during a staged step.
     pub fn mpm_obstacle_set_motion(
         obstacle: *mut mpm_obstacle,
         r#fn: mpm_motion_fn,
