@@ -148,7 +148,7 @@ MPMI_INLINE void mpmi_find_nodes(int32_t dim, int32_t width, int64_t n, double (
     if (need & MPMI_NO_PLACE)                                                                                \
       name##_chunk_##dim(axis, (need & MPMI_NEED_GRADIENT) != 0, 0, 1, points, begin, n, W);                 \
     else if (need & MPMI_NO_FIRST)                                                                           \
-      name##_chunk_##dim(axis, !mpmi_alike(dim, width), 1, 0, points, begin, n, W);                          \
+      name##_chunk_##dim(axis, !mpmi_gradients_alike(dim, width), 1, 0, points, begin, n, W);                \
     else if (need & MPMI_NEED_GRADIENT)                                                                      \
       name##_chunk_##dim(axis, 1, 1, 1, points, begin, n, W);                                                \
     else                                                                                                     \

@@ -172,8 +172,8 @@ MPMI_INLINE void mask_holes(int32_t dim, int32_t width, int32_t form, const doub
                             mpmi_weights *W) {
   for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
       const double live = volume[p] > 0.0 ? 1.0 : 0.0;
-      for (int32_t a = 0; a < (mpmi_alike(dim, width) ? dim : 1); ++a) W->w[a][k][p] *= live;
-      if (!mpmi_alike(dim, width) && form != MPMI_GATHER_MLS) W->g[0][k][p] *= live;
+      for (int32_t a = 0; a < (mpmi_gradients_alike(dim, width) ? dim : 1); ++a) W->w[a][k][p] *= live;
+      if (!mpmi_gradients_alike(dim, width) && form != MPMI_GATHER_MLS) W->g[0][k][p] *= live;
       if (form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE) W->u[0][k][p] *= live;
     }
 }

@@ -56,14 +56,16 @@ typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, int32_t need, const mpmi_
                                 int64_t n, mpmi_weights *out);
 
 /* Returns 1 where all particles have the same gradients, which W need not have then: with two nodes on an
- * axis, on the linear basis. On one axis alone a hole has nothing but W's to be without. */
-MPMI_INLINE int32_t mpmi_alike(int32_t dim, int32_t width) {
+ * axis, on the linear basis. In 1-D it has them, since there no weight of another axis masks that of a hole. */
+MPMI_INLINE int32_t mpmi_gradients_alike(int32_t dim, int32_t width) {
   return dim > 1 && width == 2;
 }
 /* Returns the gradient along an axis at node k of a stencil. */
 MPMI_INLINE double mpmi_gradient(int32_t dim, int32_t width, const mpmi_weights *W,
                                  const double *inverse_spacing, int32_t axis, int32_t k, int64_t p) {
-  return !mpmi_alike(dim, width) ? W->g[axis][k][p] : k ? inverse_spacing[axis] : -inverse_spacing[axis];
+  return !mpmi_gradients_alike(dim, width) ? W->g[axis][k][p]
+         : k                               ? inverse_spacing[axis]
+                                           : -inverse_spacing[axis];
 }
 
 #endif

@@ -85,6 +85,7 @@ START_TEST(saved_and_restored) {
 }
 END_TEST
 
+/* Without the callback that the state had no step is made, until the host has answered. */
 START_TEST(motion_is_awaited) {
   world a, b;
   open_clouds(&a, &methods[_i], 2, 1, 0);
