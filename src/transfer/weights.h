@@ -56,7 +56,7 @@ typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, int32_t need, const mpmi_
                                 int64_t n, mpmi_weights *out);
 
 /* Returns 1 where all particles have the same gradients, which W need not have then: with two nodes on an
- * axis, on the linear basis. In 1-D it has them, since there no weight of another axis masks that of a hole. */
+ * axis, on the linear basis. In 1-D it has them: there no weight of another axis masks that of a hole. */
 MPMI_INLINE int32_t mpmi_gradients_alike(int32_t dim, int32_t width) {
   return dim > 1 && width == 2;
 }
