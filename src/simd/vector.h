@@ -14,6 +14,17 @@
 #if MPMI_WIDTH >= 4
 typedef double mpmi_v4 __attribute__((vector_size(32)));
 
+/* Returns v, a product, rounded: the compiler would make a multiply-add of its sum with something, of which
+ * processors do less at a time than of additions and multiply-adds beside each other. */
+MPMI_INLINE mpmi_v4 mpmi_round4(mpmi_v4 v) {
+#if MPMI_WIDTH == 8
+  __asm__("" : "+v"(v));
+#elif defined(__AVX2__)
+  __asm__("" : "+x"(v));
+#endif
+  return v;
+}
+
 MPMI_INLINE mpmi_v4 mpmi_zero4(void) {
   return (mpmi_v4){0.0, 0.0, 0.0, 0.0};
 }
@@ -67,6 +78,11 @@ typedef double mpmi_v2 __attribute__((vector_size(16)));
 typedef struct mpmi_v4 {
   mpmi_v2 low, high;
 } mpmi_v4;
+
+/* Returns v: there are no multiply-adds. */
+MPMI_INLINE mpmi_v4 mpmi_round4(mpmi_v4 v) {
+  return v;
+}
 
 MPMI_INLINE mpmi_v4 mpmi_zero4(void) {
   return (mpmi_v4){{0.0, 0.0}, {0.0, 0.0}};
@@ -157,6 +173,10 @@ MPMI_INLINE mpmi_lanes mpmi_of_halves(mpmi_v4 low, mpmi_v4 high) {
  * always that half of `eight`, which costs nothing. Parts that begin with HALVES are two halves in registers
  * of their own, `four` and `high`, and have no `eight`. */
 enum { MPMI_HALF = MPMI_LOW, MPMI_HALVES_HIGH = 6, MPMI_HALVES_BOTH = 7 };
+/* Returns the upper half of a part. */
+MPMI_INLINE int32_t mpmi_high_part(int32_t part) {
+  return part >= MPMI_HALVES_HIGH ? MPMI_HALVES_HIGH : MPMI_HIGH;
+}
 typedef struct mpmi_node {
   mpmi_v4 four, high;
   mpmi_lanes eight;
@@ -179,6 +199,10 @@ MPMI_INLINE mpmi_node mpmi_node_zero(void) {
 MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
   if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(mpmi_load4(a), mpmi_load4(a + 4));
   return part == MPMI_LOW ? mpmi_node_of4(mpmi_load4(a)) : mpmi_node_of8(mpmi_lanes_load(a));
+}
+/* Loads two halves from where each of them is. */
+MPMI_INLINE mpmi_node mpmi_node_load_halves(const double *low, const double *high) {
+  return mpmi_node_of_halves(mpmi_load4(low), mpmi_load4(high));
 }
 /* Loads the upper half alone; the lower half is zero. */
 MPMI_INLINE mpmi_node mpmi_node_load_high(int32_t part, const double *a) {
@@ -212,16 +236,36 @@ MPMI_INLINE mpmi_node mpmi_node_sum(int32_t part, mpmi_node a, mpmi_node b) {
 MPMI_INLINE mpmi_node mpmi_node_difference(int32_t part, mpmi_node a, mpmi_node b) {
   return part == MPMI_LOW ? mpmi_node_of4(a.four - b.four) : mpmi_node_of8(a.eight - b.eight);
 }
+/* Returns v, a product, rounded. */
+MPMI_INLINE mpmi_node mpmi_node_round(int32_t part, mpmi_node v) {
+  if (part == MPMI_LOW) return mpmi_node_of4(mpmi_round4(v.four));
+  __asm__("" : "+v"(v.eight));
+  return mpmi_node_of8(v.eight);
+}
+/* a + b and a - b in the lower half; the upper one is that of a. b is rounded first. */
+MPMI_INLINE mpmi_node mpmi_node_add_low(int32_t part, mpmi_node a, mpmi_node b) {
+  if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(a.four + mpmi_round4(b.four), a.high);
+  return mpmi_node_of8(_mm512_mask_add_pd(a.eight, 0x0f, a.eight, b.eight));
+}
+MPMI_INLINE mpmi_node mpmi_node_subtract_low(int32_t part, mpmi_node a, mpmi_node b) {
+  if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(a.four - mpmi_round4(b.four), a.high);
+  return mpmi_node_of8(_mm512_mask_sub_pd(a.eight, 0x0f, a.eight, b.eight));
+}
 MPMI_INLINE mpmi_pair mpmi_pair_of(double low, double high) {
   return (mpmi_pair){low, low, low, low, high, high, high, high};
 }
 MPMI_INLINE mpmi_node mpmi_node_fma_pair(int32_t part, mpmi_node a, mpmi_pair s, mpmi_node b) {
   if (part == MPMI_HALVES_HIGH) return mpmi_node_of_halves(a.four, a.high + s[4] * b.high);
+  if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(a.four + s[0] * b.four, a.high + s[4] * b.high);
   return mpmi_node_of8(a.eight + s * b.eight);
 }
 
 #else
 enum { MPMI_HALF = MPMI_LOW, MPMI_HALVES_HIGH = MPMI_HIGH, MPMI_HALVES_BOTH = MPMI_BOTH };
+MPMI_INLINE int32_t mpmi_high_part(int32_t part) {
+  (void)part;
+  return MPMI_HIGH;
+}
 typedef struct mpmi_node {
   mpmi_v4 low, high;
 } mpmi_node;
@@ -235,6 +279,9 @@ MPMI_INLINE mpmi_node mpmi_node_zero(void) {
 MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
   return (mpmi_node){part & MPMI_LOW ? mpmi_load4(a) : mpmi_zero4(),
                      part & MPMI_HIGH ? mpmi_load4(a + 4) : mpmi_zero4()};
+}
+MPMI_INLINE mpmi_node mpmi_node_load_halves(const double *low, const double *high) {
+  return (mpmi_node){mpmi_load4(low), mpmi_load4(high)};
 }
 MPMI_INLINE mpmi_node mpmi_node_load_high(int32_t part, const double *a) {
   (void)part;
@@ -266,10 +313,23 @@ MPMI_INLINE mpmi_node mpmi_node_sum(int32_t part, mpmi_node a, mpmi_node b) {
   if (part & MPMI_HIGH) a.high = mpmi_sum4(a.high, b.high);
   return a;
 }
+MPMI_INLINE mpmi_node mpmi_node_round(int32_t part, mpmi_node v) {
+  if (part & MPMI_LOW) v.low = mpmi_round4(v.low);
+  if (part & MPMI_HIGH) v.high = mpmi_round4(v.high);
+  return v;
+}
 MPMI_INLINE mpmi_node mpmi_node_difference(int32_t part, mpmi_node a, mpmi_node b) {
   if (part & MPMI_LOW) a.low = mpmi_difference4(a.low, b.low);
   if (part & MPMI_HIGH) a.high = mpmi_difference4(a.high, b.high);
   return a;
+}
+MPMI_INLINE mpmi_node mpmi_node_add_low(int32_t part, mpmi_node a, mpmi_node b) {
+  (void)part;
+  return (mpmi_node){mpmi_sum4(a.low, mpmi_round4(b.low)), a.high};
+}
+MPMI_INLINE mpmi_node mpmi_node_subtract_low(int32_t part, mpmi_node a, mpmi_node b) {
+  (void)part;
+  return (mpmi_node){mpmi_difference4(a.low, mpmi_round4(b.low)), a.high};
 }
 MPMI_INLINE mpmi_pair mpmi_pair_of(double low, double high) {
   return (mpmi_pair){low, high};

@@ -104,11 +104,12 @@ static void choose_form(mpmi_batch *b) {
     b->need = 0;
     return;
   }
-  b->need = MPMI_NEED_GRADIENT | (matrix ? MPMI_NEED_MOMENT : MPMI_NO_FIRST);
+  const int32_t varied = matrix && !(settings->grid->moment > 0.0);
+  b->need = MPMI_NEED_GRADIENT | (varied ? MPMI_NEED_MOMENT : matrix ? 0 : MPMI_NO_FIRST);
   if (increments)
-    b->form = matrix ? MPMI_GATHER_BOTH_AFFINE : MPMI_GATHER_BOTH;
+    b->form = varied ? MPMI_GATHER_BOTH_AFFINE_VARIED : matrix ? MPMI_GATHER_BOTH_AFFINE : MPMI_GATHER_BOTH;
   else
-    b->form = matrix ? MPMI_GATHER_AFFINE : MPMI_GATHER_PLAIN;
+    b->form = varied ? MPMI_GATHER_AFFINE_VARIED : matrix ? MPMI_GATHER_AFFINE : MPMI_GATHER_PLAIN;
 }
 
 /* ---- what has gone wrong ------------------------------------------------------------------------------ */

@@ -103,23 +103,27 @@ static void scatter_block(void *user, const mpmi_visit *visit, double *tile) {
   }
 }
 
+/* Momentum of affine transfers wants weights of its own where nodes are not a spacing apart. */
 static void choose_form(p2g_job *job) {
   const mpmi_settings *settings = job->step->settings;
-  const int32_t moments = settings->transfer->moments;
-  if (mpmi_has_increments(job->to)) {
-    const int32_t plain = settings->context->works_by_halves ? MPMI_SCATTER_8_HALVES : MPMI_SCATTER_8;
-    if (settings->grid->dim < 3)
-      job->form = job->affine ? MPMI_SCATTER_FLAT_AFFINE : MPMI_SCATTER_FLAT;
-    else
-      job->form = job->affine ? MPMI_SCATTER_8_AFFINE : plain;
-    job->need =
-        moments == MPMI_NEED_MLS ? moments : MPMI_NEED_GRADIENT | (job->affine ? moments : MPMI_NO_FIRST);
-  } else if (job->affine && settings->grid->family >= MPMI_FAMILY_OPEN_BSPLINE2) {
-    job->form = MPMI_SCATTER_4_UNEVEN;
-    job->need = MPMI_NEED_MOMENT;
-  } else {
-    job->form = job->affine ? MPMI_SCATTER_4_AFFINE : MPMI_SCATTER_4;
+  const int32_t halves = settings->context->works_by_halves, affine = job->affine;
+  const int32_t uneven = affine && settings->grid->family >= MPMI_FAMILY_OPEN_BSPLINE2;
+  const int32_t moment = uneven ? MPMI_NEED_MOMENT : 0;
+  if (!mpmi_has_increments(job->to)) {
+    job->form = uneven ? MPMI_SCATTER_4_UNEVEN : affine ? MPMI_SCATTER_4_AFFINE : MPMI_SCATTER_4;
+    job->need = moment;
+    return;
   }
+  job->need = MPMI_NEED_GRADIENT | (affine ? moment : MPMI_NO_FIRST);
+  if (settings->transfer->moments == MPMI_NEED_MLS) job->need = MPMI_NEED_MLS;
+  if (settings->grid->dim < 3)
+    job->form = uneven ? MPMI_SCATTER_FLAT_UNEVEN : affine ? MPMI_SCATTER_FLAT_AFFINE : MPMI_SCATTER_FLAT;
+  else if (affine)
+    job->form = uneven   ? MPMI_SCATTER_8_UNEVEN
+                : halves ? MPMI_SCATTER_8_AFFINE_HALVES
+                         : MPMI_SCATTER_8_AFFINE;
+  else
+    job->form = halves ? MPMI_SCATTER_8_HALVES : MPMI_SCATTER_8;
 }
 
 mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes) {

@@ -53,9 +53,6 @@ static int32_t finds_only_C(const mpmi_batch *b) {
 }
 
 /* ---- before the batches of a set ---------------------------------------------------------------------- */
-static int32_t is_matrix(int32_t form) {
-  return form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE;
-}
 
 /* Tells whether anything reads the rows of the gradient after the gather. */
 static int32_t reads_gradient(const mpmi_batch *b) {
@@ -66,7 +63,7 @@ static int32_t reads_gradient(const mpmi_batch *b) {
 
 static void bind_gradient(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
-  const int32_t reads = reads_gradient(b), matrix = is_matrix(b->form);
+  const int32_t reads = reads_gradient(b), matrix = mpmi_gathers_C(b->form);
   for (int32_t e = 0; e < 9 && (!reads || finds_only_C(b)); ++e) b->gather.L[e] = NULL;
   b->keeps = MPMI_KEEPS_NOTHING;
   if (!b->set->field[MPMI_L].present) return;
@@ -102,7 +99,7 @@ void mpmi_strain_enter(mpmi_batch *b) {
 void mpmi_gradient_aim(mpmi_batch *b) {
   const int32_t dim = b->set->grid->dim;
   if (b->keeps != MPMI_KEEPS_DIRECTLY) return;
-  double **to = is_matrix(b->form) ? b->gather.C : b->gather.L;
+  double **to = mpmi_gathers_C(b->form) ? b->gather.C : b->gather.L;
   for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
     to[mpmi_gradient_map(dim)[c]] = mpmi_component_row(b->set, MPMI_L, 1, c) + b->begin;
 }

@@ -4,31 +4,29 @@
  *   L_p  = sum v_i (x) grad w_ip                                  MPoint theory eq. 38
  *   C_p  = (sum w_ip v_i (x) (x_i - x_p)) D_p^-1                  APIC: Jiang et al. 2017
  *
- * Summed node by node, row by row, axis by axis. The MLS form takes the moments of C about the middle of the
- * stencil, where distances are small integers, and moves them to the particle at the end; where D can be
- * small the digits lost in moving them would count. Holes have no initial volume and gather zeros. */
+ * Summed node by node, row by row, axis by axis. Where D is the same for all particles the moments of C are
+ * those about the middle of the stencil, where distances are small integers, moved to the particle at the
+ * end; where D can be small the digits lost in moving them would count. Holes have no initial volume and gather zeros. */
 #include "simd/pack.h"
 #include "transfer/gather.h"
 
-/* Holds, per particle of a chunk: v; dv; gradients; sums of w v (x_i - x_p), or of w v (i - middle) in the
- * MLS form. Below three axes two of these share four values: v and dv, and the columns of a matrix. */
+/* Holds, per particle of a chunk: v; dv; gradients; sums of w v (x_i - x_p), or of w v (i - middle) where D
+ * is the same for all. Below three axes two of these share four values: v and dv, and the columns of a matrix. */
 typedef struct mpmi_gathered {
   _Alignas(64) double v[4 * MPMI_CHUNK], dv[4 * MPMI_CHUNK], L[3][4 * MPMI_CHUNK], M[3][4 * MPMI_CHUNK];
 } mpmi_gathered;
 
-/* The node of a stencil, counted along an axis, about which moments are taken. */
-#define MIDDLE(width) ((width) > 2 ? 1 : 0)
-
-/* sum += w_k v_k; with `moment` also *m += (k - middle) w_k v_k. Called for k = 0, 1 ... in order. */
-MPMI_INLINE void add(int32_t part, int32_t moment, int32_t width, int32_t k, double w, mpmi_node v,
-                     mpmi_node *sum, mpmi_node *m) {
-  const int32_t middle = MIDDLE(width);
+/* sum += w_k v_k; with `moment` also *m += (k - middle) w_k v_k of the velocity, which is the part of v that
+ * comes first. Called for k = 0, 1 ... in order. */
+MPMI_INLINE void add(int32_t all, int32_t part, int32_t moment, int32_t width, int32_t k, double w,
+                     mpmi_node v, mpmi_node *sum, mpmi_node *m) {
+  const int32_t middle = MPMI_MIDDLE(width);
   if (!moment || k == middle) {
-    *sum = k ? mpmi_node_fma(part, *sum, w, v) : mpmi_node_scale(part, w, v);
+    *sum = k ? mpmi_node_fma(all, *sum, w, v) : mpmi_node_scale(all, w, v);
     return;
   }
-  const mpmi_node term = mpmi_node_scale(part, w, v);
-  *sum = k ? mpmi_node_sum(part, *sum, term) : term;
+  const mpmi_node term = mpmi_node_round(all, mpmi_node_scale(all, w, v));
+  *sum = k ? mpmi_node_sum(all, *sum, term) : term;
   if (k == middle + 1)
     *m = middle ? mpmi_node_difference(part, term, *m) : term;
   else
@@ -38,6 +36,14 @@ MPMI_INLINE void add(int32_t part, int32_t moment, int32_t width, int32_t k, dou
 /* slope += g_k v_k. */
 MPMI_INLINE void add_slope(int32_t part, int32_t k, double g, mpmi_node v, mpmi_node *slope) {
   *slope = k ? mpmi_node_fma(part, *slope, g, v) : mpmi_node_scale(part, g, v);
+}
+
+/* How a form finds C: not at all, by moments about the middle of the stencil, or by weights of its own. */
+enum { NO_MOMENT, EVEN_MOMENT, VARIED_MOMENT };
+MPMI_INLINE int32_t moment_of(int32_t form) {
+  if (form == MPMI_GATHER_MLS || form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE)
+    return EVEN_MOMENT;
+  return mpmi_gathers_C(form) ? VARIED_MOMENT : NO_MOMENT;
 }
 
 MPMI_INLINE void store_columns(int32_t dim, int32_t part, const mpmi_node *column, int64_t p,
@@ -53,7 +59,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
                                  const double *inverse_spacing, int64_t p, const double *tile,
                                  mpmi_gathered *out) {
   const int32_t values = mpmi_taken_values(mpmi_gather_takes(dim, form)), mls = form == MPMI_GATHER_MLS;
-  const int32_t affine = form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE;
+  const int32_t moment = moment_of(form), even = moment == EVEN_MOMENT, varied = moment == VARIED_MOMENT;
   const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW, part = values == 8 ? MPMI_HALF : MPMI_LOW;
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, mid = dim >= 2 ? dim - 2 : 0;
   const double *stencil = tile + (int64_t)values * W->node[p];
@@ -69,20 +75,20 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       const double *node = stencil + (int64_t)values * ((i * edge + j) * (dim == 1 ? 0 : edge));
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
         const mpmi_node vi = mpmi_node_load(all, node + k * values);
-        add(all, mls, width, k, W->w[last][k][p], vi, &rv, &rM);
+        add(all, part, even, width, k, W->w[last][k][p], vi, &rv, &rM);
         if (!mls) add_slope(part, k, mpmi_gradient(dim, width, W, inverse_spacing, last, k, p), vi, &rL);
-        if (affine) add_slope(part, k, W->u[last][k][p], vi, &rM);
+        if (varied) add_slope(part, k, W->u[last][k][p], vi, &rM);
       }
       if (dim == 1) {
         pv = rv, pL[last] = rL, pM[last] = rM;
         continue;
       }
       const double w = W->w[mid][j][p];
-      add(all, mls, width, j, w, rv, &pv, &pM[mid]);
+      add(all, part, even, width, j, w, rv, &pv, &pM[mid]);
       if (!mls) add_slope(part, j, mpmi_gradient(dim, width, W, inverse_spacing, mid, j, p), rv, &pL[mid]);
       if (!mls) add_slope(part, j, w, rL, &pL[last]);
-      if (affine) add_slope(part, j, W->u[mid][j][p], rv, &pM[mid]);
-      if (affine || mls) add_slope(part, j, w, rM, &pM[last]);
+      if (varied) add_slope(part, j, W->u[mid][j][p], rv, &pM[mid]);
+      if (moment) add_slope(part, j, w, rM, &pM[last]);
     }
     if (dim < 3) {
       v = pv;
@@ -90,25 +96,25 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       continue;
     }
     const double w = W->w[0][i][p];
-    add(all, mls, width, i, w, pv, &v, &M[0]);
+    add(all, part, even, width, i, w, pv, &v, &M[0]);
     if (!mls) add_slope(part, i, mpmi_gradient(dim, width, W, inverse_spacing, 0, i, p), pv, &L[0]);
-    if (affine) add_slope(part, i, W->u[0][i][p], pv, &M[0]);
+    if (varied) add_slope(part, i, W->u[0][i][p], pv, &M[0]);
     for (int32_t k = 1; k < dim; ++k) {
       if (!mls) add_slope(part, i, w, pL[k], &L[k]);
-      if (affine || mls) add_slope(part, i, w, pM[k], &M[k]);
+      if (moment) add_slope(part, i, w, pM[k], &M[k]);
     }
   }
   mpmi_store4(out->v + 4 * p, mpmi_node_low(all, v));
   if (values == 8) mpmi_store4(out->dv + 4 * p, mpmi_node_high(v));
   if (!mls) store_columns(dim, part, L, p, out->L);
-  if (affine || mls) store_columns(dim, part, M, p, out->M);
+  if (moment) store_columns(dim, part, M, p, out->M);
 }
 
-/* Column k of C in the MLS form, from its moments about the middle of the stencil. */
-MPMI_INLINE void mls_column(int32_t width, double h, int32_t dim, mpmi_lanes first, const mpmi_lanes *v,
-                            mpmi_lanes *column) {
+/* Column k of C from its moments about the middle of the stencil. */
+MPMI_INLINE void even_column(int32_t width, double h, int32_t dim, mpmi_lanes first, const mpmi_lanes *v,
+                             mpmi_lanes *column) {
   const double factor = MPMI_MLS_INVERSE(width) / h;
-  for (int32_t r = 0; r < dim; ++r) column[r] = (column[r] + (first + MIDDLE(width)) * v[r]) * factor;
+  for (int32_t r = 0; r < dim; ++r) column[r] = (column[r] + (first + MPMI_MIDDLE(width)) * v[r]) * factor;
 }
 
 /* Takes the columns of a matrix for as many particles as a register holds, from q on. */
@@ -133,7 +139,6 @@ MPMI_INLINE void store_matrix(int32_t dim, double *const *to, int64_t s, mpmi_la
  * batch on. */
 MPMI_INLINE void hand_on(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t q,
                          int64_t s, const mpmi_weights *W, const mpmi_gathered *in, mpmi_made *made) {
-  const int32_t affine = form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE;
   const int32_t mls = form == MPMI_GATHER_MLS, both = form >= MPMI_GATHER_BOTH;
   mpmi_lanes v[4], change[4] = {{0.0}}, L[3][3], column[3][4];
   const mpmi_lanes *const dv = both && dim < 3 ? v + 2 : change;
@@ -141,7 +146,7 @@ MPMI_INLINE void hand_on(int32_t dim, int32_t width, int32_t form, const mpmi_ga
   if (both && dim == 3) mpmi_separate(in->dv + 4 * q, change);
   take_columns(dim, mls ? in->M : in->L, q, column);
   for (int32_t k = 0; k < dim; ++k) {
-    if (mls) mls_column(width, job->axis[k].spacing, dim, mpmi_lanes_load(W->first[k] + q), v, column[k]);
+    if (mls) even_column(width, job->axis[k].spacing, dim, mpmi_lanes_load(W->first[k] + q), v, column[k]);
     for (int32_t r = 0; r < dim; ++r) L[r][k] = column[k][r];
   }
   if (job->v)
@@ -152,10 +157,15 @@ MPMI_INLINE void hand_on(int32_t dim, int32_t width, int32_t form, const mpmi_ga
   if (job->L[0]) store_matrix(dim, job->L, s, L);
   if (job->move) mpmi_move_lanes(dim, job->move, s, v, dv, &made->moved);
   if (job->deform) mpmi_deform_lanes(dim, job->deform, s, L, &made->deformed);
-  if (!affine) return;
+  if (!mpmi_gathers_C(form)) return;
   take_columns(dim, in->M, q, column);
-  for (int32_t k = 0; k < dim; ++k)
-    for (int32_t r = 0; r < dim; ++r) L[r][k] = column[k][r] * mpmi_lanes_load(W->inverse_moment[k] + q);
+  for (int32_t k = 0; k < dim; ++k) {
+    if (moment_of(form) == EVEN_MOMENT)
+      even_column(width, job->axis[k].spacing, dim, mpmi_lanes_load(W->first[k] + q), v, column[k]);
+    for (int32_t r = 0; r < dim; ++r)
+      L[r][k] = moment_of(form) == EVEN_MOMENT ? column[k][r]
+                                               : column[k][r] * mpmi_lanes_load(W->inverse_moment[k] + q);
+  }
   store_matrix(dim, job->C, s, L);
 }
 
@@ -174,7 +184,7 @@ MPMI_INLINE void mask_holes(int32_t dim, int32_t width, int32_t form, const doub
       const double live = volume[p] > 0.0 ? 1.0 : 0.0;
       for (int32_t a = 0; a < (mpmi_gradients_alike(dim, width) ? dim : 1); ++a) W->w[a][k][p] *= live;
       if (!mpmi_gradients_alike(dim, width) && form != MPMI_GATHER_MLS) W->g[0][k][p] *= live;
-      if (form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_BOTH_AFFINE) W->u[0][k][p] *= live;
+      if (moment_of(form) == VARIED_MOMENT) W->u[0][k][p] *= live;
     }
 }
 

@@ -81,7 +81,7 @@ MPMI_INLINE void give_values(int32_t dim, int32_t width, const mpmi_scalars *at,
   _Alignas(64) double of[4 * MPMI_CHUNK];
   for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_CHUNK) {
     at->weights(at->axis, 0, &at->points, begin + s, MPMI_CHUNK, &W);
-    mpmi_pack(MPMI_CHUNK, value[0] + s, value[1] + s, value[2] + s, value[3] + s, of, 4);
+    mpmi_pack(MPMI_CHUNK, (const double *[4]){value[0] + s, value[1] + s, value[2] + s, value[3] + s}, of);
     for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
       double *stencil = tile + 4 * (int64_t)W.node[p];
       MPMI_SETTLE(stencil);
@@ -135,8 +135,8 @@ MPMI_INLINE void find_flux(int32_t dim, int32_t width, int32_t total, const mpmi
 MPMI_INLINE void pack_last(int32_t dim, int32_t width, const mpmi_weights *W, mpmi_rows *to) {
   const double *w[4] = {no_node, no_node, no_node, no_node}, *g[4] = {no_node, no_node, no_node, no_node};
   for (int32_t k = 0; k < width; ++k) w[k] = W->w[dim - 1][k], g[k] = W->g[dim - 1][k];
-  mpmi_pack(MPMI_CHUNK, w[0], w[1], w[2], w[3], to->w, 4);
-  mpmi_pack(MPMI_CHUNK, g[0], g[1], g[2], g[3], to->g[0], 4);
+  mpmi_pack(MPMI_CHUNK, w, to->w);
+  mpmi_pack(MPMI_CHUNK, g, to->g[0]);
 }
 
 MPMI_INLINE void add_row(double *to, mpmi_v4 row) {

@@ -22,8 +22,9 @@
 #define MPMI_APART
 #endif
 
-/* What the particles of a chunk give as nodes have it: a and the columns, 4 or 8 values each; 4 where columns
- * have nothing but force. */
+/* What the particles of a chunk give as nodes have it: a and the columns, 4 or 8 values for each particle; of
+ * two halves the lower one of all particles, and then the upper one. Columns that have nothing but force have
+ * the upper half alone. */
 typedef struct mpmi_first_order {
   _Alignas(64) double a[8 * MPMI_CHUNK], column[3][8 * MPMI_CHUNK];
 } mpmi_first_order;
@@ -42,7 +43,7 @@ MPMI_INLINE void scatter_linear(int32_t dim, int32_t width, const mpmi_weights *
       if (dim < 2 && j > 0) break;
       double outer = dim == 3 ? W->w[0][i][p] * W->w[1][j][p] : dim == 2 ? W->w[0][j][p] : 1.0;
       mpmi_node value = mpmi_node_scale(MPMI_LOW, outer, row);
-      const mpmi_node growth = mpmi_node_scale(MPMI_LOW, outer, step[last]);
+      const mpmi_node growth = mpmi_node_round(MPMI_LOW, mpmi_node_scale(MPMI_LOW, outer, step[last]));
       double *node = stencil + 4 * (i * edge + j) * (dim == 1 ? 0 : edge);
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
         mpmi_node q = mpmi_node_load(MPMI_LOW, node + 4 * k);
@@ -55,38 +56,81 @@ MPMI_INLINE void scatter_linear(int32_t dim, int32_t width, const mpmi_weights *
   }
 }
 
-/* Returns the second weights of node k of an axis: that of the momentum and that of the force. */
-MPMI_INLINE mpmi_pair second(int32_t dim, int32_t width, int32_t affine, const mpmi_weights *W,
-                             const double *slope, int32_t axis, int32_t k, int64_t p) {
-  const double g = mpmi_gradient(dim, width, W, slope, axis, k, p);
-  return mpmi_pair_of(affine ? W->u[axis][k][p] : g, g);
-}
-
-/* Returns a + second weight * column; with 4 values there is only the momentum's. */
-MPMI_INLINE mpmi_node add_second(int32_t dim, int32_t width, int32_t values, int32_t part, mpmi_node a,
-                                 int32_t affine, const mpmi_weights *W, const double *inverse_spacing,
-                                 int32_t axis, int32_t k, int64_t p, mpmi_node column) {
-  if (values == 4) return mpmi_node_fma(part, a, W->u[axis][k][p], column);
-  return mpmi_node_fma_pair(part, a, second(dim, width, affine, W, inverse_spacing, axis, k, p), column);
-}
-
-MPMI_INLINE int32_t is_affine(int32_t form) {
-  return form == MPMI_SCATTER_4_AFFINE || form == MPMI_SCATTER_4_UNEVEN || form == MPMI_SCATTER_8_AFFINE ||
-         form == MPMI_SCATTER_FLAT_AFFINE;
+/* What the columns of a form have for momentum: nothing; its growth per node; or its gradient, with weights
+ * of their own. */
+enum { NO_MOMENT, EVEN_MOMENT, UNEVEN_MOMENT };
+MPMI_INLINE int32_t moment_of(int32_t form) {
+  switch (form) {
+  case MPMI_SCATTER_4_AFFINE:
+  case MPMI_SCATTER_8_AFFINE:
+  case MPMI_SCATTER_8_AFFINE_HALVES:
+  case MPMI_SCATTER_FLAT_AFFINE:
+    return EVEN_MOMENT;
+  case MPMI_SCATTER_4_UNEVEN:
+  case MPMI_SCATTER_8_UNEVEN:
+  case MPMI_SCATTER_FLAT_UNEVEN:
+    return UNEVEN_MOMENT;
+  default:
+    return NO_MOMENT;
+  }
 }
 MPMI_INLINE int32_t is_flat(int32_t form) {
   return form >= MPMI_SCATTER_FLAT;
 }
 
+MPMI_INLINE int32_t has_halves(int32_t form) {
+  return form == MPMI_SCATTER_8_HALVES || form == MPMI_SCATTER_8_AFFINE_HALVES;
+}
+
+/* Returns the momentum at node k of an axis, of that at the middle one and its growth per node; force, in the
+ * upper half, stays. */
+MPMI_INLINE mpmi_node grown(int32_t width, int32_t part, int32_t moment, int32_t k, mpmi_node middle,
+                            mpmi_node growth) {
+  const int32_t steps = k - MPMI_MIDDLE(width);
+  if (moment != EVEN_MOMENT || steps == 0) return middle;
+  if (steps < 0) return mpmi_node_subtract_low(part, middle, growth);
+  mpmi_node value = mpmi_node_add_low(part, middle, growth);
+  return steps == 1 ? value : mpmi_node_add_low(part, value, growth);
+}
+
+/* Returns a + second weight * column; with 4 values there is only the momentum's. */
+MPMI_INLINE mpmi_node add_second(int32_t dim, int32_t width, int32_t values, int32_t part, mpmi_node a,
+                                 int32_t moment, const mpmi_weights *W, const double *inverse_spacing,
+                                 int32_t axis, int32_t k, int64_t p, mpmi_node column) {
+  if (values == 4) return mpmi_node_fma(part, a, W->u[axis][k][p], column);
+  const double g = mpmi_gradient(dim, width, W, inverse_spacing, axis, k, p);
+  if (moment == UNEVEN_MOMENT) return mpmi_node_fma_pair(part, a, mpmi_pair_of(W->u[axis][k][p], g), column);
+  return mpmi_node_fma_pair(mpmi_high_part(part), a, mpmi_pair_of(moment ? 0.0 : g, g), column);
+}
+
 /* The values that nodes have in a form, and the part that the columns give to. */
 MPMI_INLINE int32_t all_of(int32_t form) {
-  return form < MPMI_SCATTER_8 ? MPMI_LOW : form == MPMI_SCATTER_8_HALVES ? MPMI_HALVES_BOTH : MPMI_BOTH;
+  return form < MPMI_SCATTER_8 ? MPMI_LOW : has_halves(form) ? MPMI_HALVES_BOTH : MPMI_BOTH;
 }
 MPMI_INLINE int32_t part_of(int32_t form) {
-  return form < MPMI_SCATTER_8           ? MPMI_LOW
-         : form == MPMI_SCATTER_8_AFFINE ? MPMI_BOTH
-         : form == MPMI_SCATTER_8_HALVES ? MPMI_HALVES_HIGH
-                                         : MPMI_HIGH;
+  return form < MPMI_SCATTER_8 || moment_of(form) ? all_of(form) : mpmi_high_part(all_of(form));
+}
+
+/* Packs four or eight values, or the last four of eight unless `whole`, of as many particles as a register
+ * holds, from particle q of the chunk on. */
+MPMI_INLINE void pack_values(int32_t form, const mpmi_lanes *value, int32_t whole, int64_t q, double *to) {
+  if (form < MPMI_SCATTER_8 || is_flat(form)) {
+    mpmi_interleave(value, to + 4 * q);
+  } else if (!whole) {
+    mpmi_interleave(value + 4, to + 4 * q);
+  } else if (has_halves(form)) {
+    mpmi_interleave(value, to + 4 * q);
+    mpmi_interleave(value + 4, to + 4 * (MPMI_CHUNK + q));
+  } else {
+    mpmi_interleave8(value, to + 8 * q);
+  }
+}
+/* Returns the same of particle p. */
+MPMI_INLINE mpmi_node packed(int32_t form, const double *of, int32_t whole, int64_t p) {
+  if (form < MPMI_SCATTER_8) return mpmi_node_load(MPMI_LOW, of + 4 * p);
+  if (!whole) return mpmi_node_load_high(part_of(form), of + 4 * p);
+  return has_halves(form) ? mpmi_node_load_halves(of + 4 * p, of + 4 * (MPMI_CHUNK + p))
+                          : mpmi_node_load(MPMI_BOTH, of + 8 * p);
 }
 
 /* Scatters mass, momentum and force, or with 4 values mass and affine momentum. Without an affine part the
@@ -95,21 +139,19 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t form, c
                                      const double *inverse_spacing, int64_t p, const mpmi_first_order *of,
                                      double *MPMI_APART stencil) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
-  const int32_t values = form < MPMI_SCATTER_8 ? 4 : 8, affine = is_affine(form);
+  const int32_t values = form < MPMI_SCATTER_8 ? 4 : 8, moment = moment_of(form);
   const int32_t all = all_of(form), part = part_of(form);
-  const mpmi_node a = mpmi_node_load(all, of->a + values * p);
+  const mpmi_node a = packed(form, of->a, 1, p);
   mpmi_node column[3];
-  for (int32_t k = 0; k < dim; ++k)
-    column[k] = values == 8 && !affine ? mpmi_node_load_high(part, of->column[k] + 4 * p)
-                                       : mpmi_node_load(part, of->column[k] + values * p);
+  for (int32_t k = 0; k < dim; ++k) column[k] = packed(form, of->column[k], moment != NO_MOMENT, p);
   /* sums over the axes before the last: node += w_k value + s_k slope */
   mpmi_node plane = a, plane_1 = column[0], plane_2 = column[last], value = a, slope = column[last];
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
     if (dim < 3 && i > 0) break;
     if (dim == 3) {
       const double w = W->w[0][i][p];
-      plane = add_second(dim, width, values, part, mpmi_node_scale(all, w, a), affine, W, inverse_spacing, 0,
-                         i, p, column[0]);
+      plane = mpmi_node_scale(all, w, grown(width, part, moment, i, a, column[0]));
+      plane = add_second(dim, width, values, part, plane, moment, W, inverse_spacing, 0, i, p, column[0]);
       plane_1 = mpmi_node_scale(part, w, column[1]);
       plane_2 = mpmi_node_scale(part, w, column[2]);
     }
@@ -117,32 +159,36 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t form, c
       if (dim < 2 && j > 0) break;
       if (dim >= 2) {
         const double w = W->w[dim - 2][j][p];
-        value = add_second(dim, width, values, part, mpmi_node_scale(all, w, plane), affine, W,
-                           inverse_spacing, dim - 2, j, p, plane_1);
+        value = mpmi_node_scale(all, w, grown(width, part, moment, j, plane, plane_1));
+        value =
+            add_second(dim, width, values, part, value, moment, W, inverse_spacing, dim - 2, j, p, plane_1);
         slope = mpmi_node_scale(part, w, plane_2);
       }
       double *node = stencil + values * (i * edge + j) * (dim == 1 ? 0 : edge);
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
         mpmi_node q = mpmi_node_load(all, node + values * k);
-        q = mpmi_node_fma(all, q, W->w[last][k][p], value);
+        q = mpmi_node_fma(all, q, W->w[last][k][p], grown(width, part, moment, k, value, slope));
         mpmi_node_store(
             all, node + values * k,
-            add_second(dim, width, values, part, q, affine, W, inverse_spacing, last, k, p, slope));
+            add_second(dim, width, values, part, q, moment, W, inverse_spacing, last, k, p, slope));
       }
     }
   }
 }
 
 /* Returns a + second weight * column of momentum and force together. */
-MPMI_INLINE mpmi_v4 add_flat_second(int32_t dim, int32_t width, mpmi_v4 a, int32_t affine,
+MPMI_INLINE mpmi_v4 add_flat_second(int32_t dim, int32_t width, mpmi_v4 a, int32_t moment,
                                     const mpmi_weights *W, const double *inverse_spacing, int32_t axis,
                                     int32_t k, int64_t p, mpmi_v4 column) {
   const double g = mpmi_gradient(dim, width, W, inverse_spacing, axis, k, p);
-  return affine ? mpmi_fma_pair4(a, W->u[axis][k][p], g, column) : mpmi_fma4(a, g, column);
+  if (!moment) return mpmi_fma4(a, g, column);
+  const int32_t steps = k - MPMI_MIDDLE(width);
+  const double u = moment == UNEVEN_MOMENT ? W->u[axis][k][p] : steps ? steps * W->w[axis][k][p] : 0.0;
+  return mpmi_fma_pair4(a, u, g, column);
 }
 
 /* Scatters momentum and force of 1-D or 2-D to the nodes of a stencil, and mass to theirs, row by row. */
-MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t affine, const mpmi_weights *W,
+MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t moment, const mpmi_weights *W,
                               const double *inverse_spacing, int64_t p, const mpmi_first_order *of,
                               double mass, double *MPMI_APART stencil, double *MPMI_APART masses) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
@@ -156,7 +202,7 @@ MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t affine, const 
     if (dim < 2 && j > 0) break;
     if (dim == 2) {
       const double w = W->w[0][j][p];
-      value = add_flat_second(dim, width, mpmi_scale4(w, a), affine, W, inverse_spacing, 0, j, p, column);
+      value = add_flat_second(dim, width, mpmi_scale4(w, a), moment, W, inverse_spacing, 0, j, p, column);
       slope = mpmi_scale4(w, step);
       row_mass = w * mass;
     }
@@ -164,13 +210,11 @@ MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t affine, const 
     MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
       const mpmi_v4 q = mpmi_fma4(mpmi_load4(node + 4 * k), W->w[last][k][p], value);
       mpmi_store4(node + 4 * k,
-                  add_flat_second(dim, width, q, affine, W, inverse_spacing, last, k, p, slope));
+                  add_flat_second(dim, width, q, moment, W, inverse_spacing, last, k, p, slope));
     }
     mpmi_store4(row, mpmi_fma4(mpmi_load4(row), row_mass, weights));
   }
 }
-
-_Alignas(64) static const double zero[MPMI_CHUNK] = {0.0};
 
 /* The component arrays of the stress, by column and row. */
 typedef struct mpmi_stress_rows {
@@ -184,163 +228,114 @@ MPMI_INLINE mpmi_stress_rows stress_rows(int32_t dim, const mpmi_scatter *job) {
   return rows;
 }
 
-/* What the particles of a chunk give, component by component. */
+/* What as many particles as a register holds give, component by component; matrices are [column][row]. */
 typedef struct mpmi_given {
-  _Alignas(64) double momentum[3][MPMI_CHUNK], affine[3][3][MPMI_CHUNK]; /* affine, stress: [column][row] */
-  double force[3][MPMI_CHUNK], stress[3][3][MPMI_CHUNK];
+  mpmi_lanes momentum[3], affine[3][3], force[3], stress[3][3];
 } mpmi_given;
 
-/* The hoop stress of a ring pulls it inwards: f_r -= V sigma_theta / r. */
-MPMI_INLINE void give_hoop_force(const mpmi_scatter *job, int64_t s, int64_t n, double *to) {
-  const double *volume = job->volume + s, *sigma = job->stress[2] + s, *radius = job->points.x[0] + s;
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
-    const double force = volume[p] * sigma[p] / radius[p];
-    to[p] -= radius[p] > 0.0 ? force : 0.0;
-  }
+/* The hoop stress of a ring pulls it inwards: f_r -= V sigma_theta / r; where radius and weights are those of
+ * the reference positions, r = F_theta R. */
+MPMI_INLINE void give_hoop_force(int32_t total, const mpmi_scatter *job, int64_t s, mpmi_given *to) {
+  const mpmi_lanes zero = {0.0}, radius = mpmi_lanes_load(job->points.x[0] + s);
+  const mpmi_lanes volume = mpmi_lanes_load(job->volume + s), sigma = mpmi_lanes_load(job->stress[2] + s);
+  const mpmi_lanes force = volume * sigma / (total ? mpmi_lanes_load(job->F[4] + s) * radius : radius);
+  to->force[0] -= mpmi_lanes_select(radius > 0.0, force, zero);
 }
 
-/* The same where radius and weights are those of the reference positions: f_r -= V sigma_theta / (F_theta
- * R). */
-MPMI_INLINE void give_nominal_hoop_force(const mpmi_scatter *job, int64_t s, int64_t n, double *to) {
-  const double *volume = job->volume + s, *sigma = job->stress[2] + s, *radius = job->points.x[0] + s;
-  const double *stretch = job->F[4] + s;
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
-    const double force = volume[p] * sigma[p] / (stretch[p] * radius[p]);
-    to[p] -= radius[p] > 0.0 ? force : 0.0;
-  }
-}
-
-/* Computes -V sigma F^-T. */
-MPMI_INLINE void give_nominal(int32_t dim, const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s,
-                              int64_t n, mpmi_given *to) {
-  for (int64_t q = 0; q < mpmi_whole_chunks(n); q += MPMI_LANES) {
-    mpmi_lanes inverse[3][3];
-    const mpmi_lanes volume = mpmi_lanes_load(job->volume + s + q);
-    mpmi_inverse_load(dim, job->F, s + q, inverse);
-    for (int32_t r = 0; r < dim; ++r) {
-      mpmi_lanes force[3];
-      for (int32_t j = 0; j < dim; ++j) force[j] = -volume * mpmi_lanes_load(stress->at[j][r] + s + q);
-      for (int32_t k = 0; k < dim; ++k) {
-        mpmi_lanes sum = {0.0};
-        for (int32_t j = 0; j < dim; ++j) sum += force[j] * inverse[k][j];
-        mpmi_lanes_store(to->stress[k][r] + q, sum);
-      }
-    }
-  }
-}
-
-/* Computes -V sigma, of which the lower triangle is filled, and the external force. */
-MPMI_INLINE void give_force(int32_t dim, int32_t total, const mpmi_scatter *job,
-                            const mpmi_stress_rows *stress, int64_t s, int64_t n, mpmi_given *to) {
-  const double *volume = job->volume + s, *mass = job->mass + s;
+/* Computes -V sigma, or -V sigma F^-T. */
+MPMI_INLINE void give_stress(int32_t dim, int32_t total, const mpmi_scatter *job,
+                             const mpmi_stress_rows *stress, int64_t s, mpmi_given *to) {
+  const mpmi_lanes volume = mpmi_lanes_load(job->volume + s);
+  for (int32_t k = 0; k < dim; ++k)
+    for (int32_t r = k; r < dim; ++r)
+      to->stress[k][r] = to->stress[r][k] = -volume * mpmi_lanes_load(stress->at[k][r] + s);
+  if (!total) return;
+  mpmi_lanes inverse[3][3], force[3];
+  mpmi_inverse_load(dim, job->F, s, inverse);
   for (int32_t r = 0; r < dim; ++r) {
-    const double g = job->gravity[r];
-    if (job->force[r]) {
-      const double *added = job->force[r] + s;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->force[r][p] = mass[p] * g + added[p];
-    } else {
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->force[r][p] = mass[p] * g;
-    }
-    for (int32_t k = 0; k <= r && !total; ++k) {
-      const double *sigma = stress->at[k][r] + s;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->stress[k][r][p] =
-          -volume[p] * sigma[p];
+    for (int32_t j = 0; j < dim; ++j) force[j] = to->stress[j][r];
+    for (int32_t k = 0; k < dim; ++k) {
+      mpmi_lanes sum = {0.0};
+      for (int32_t j = 0; j < dim; ++j) sum += force[j] * inverse[k][j];
+      to->stress[k][r] = sum;
     }
   }
-  if (dim == 2 && job->hoop && total)
-    give_nominal_hoop_force(job, s, n, to->force[0]);
-  else if (dim == 2 && job->hoop)
-    give_hoop_force(job, s, n, to->force[0]);
 }
 
-/* Computes momentum. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis;
- * there the fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Other affine forms: the columns of
+/* Computes the external force. */
+MPMI_INLINE void give_force(int32_t dim, int32_t total, const mpmi_scatter *job, int64_t s, mpmi_given *to) {
+  const mpmi_lanes zero = {0.0}, mass = mpmi_lanes_load(job->mass + s);
+  for (int32_t r = 0; r < dim; ++r) {
+    const mpmi_lanes added = job->force[r] ? mpmi_lanes_load(job->force[r] + s) : zero;
+    to->force[r] = mass * job->gravity[r] + added;
+  }
+  if (dim == 2 && job->hoop) give_hoop_force(total, job, s, to);
+}
+
+/* Computes momentum, for the particles from s in the set and q in the chunk on. Where nodes are a spacing
+ * apart: m (v + C d) at the first node, or with 8 values at the middle one, and m C h per node of each axis;
+ * with 4 values the fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Elsewhere the columns of
  * m C. */
 MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, int32_t total,
-                               const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s, int64_t n,
+                               const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s, int64_t q,
                                const mpmi_weights *W, mpmi_given *to) {
-  const int32_t linear = form == MPMI_SCATTER_4_AFFINE, affine = is_affine(form);
-  const int32_t fused = linear && job->fused_dt != 0.0;
-  const double *mass = job->mass + s, *volume = job->volume + s;
+  const int32_t moment = moment_of(form), fused = form == MPMI_SCATTER_4_AFFINE && job->fused_dt != 0.0;
+  const int32_t from = form == MPMI_SCATTER_4_AFFINE ? 0 : MPMI_MIDDLE(width);
+  const mpmi_lanes mass = mpmi_lanes_load(job->mass + s), volume = mpmi_lanes_load(job->volume + s);
   for (int32_t r = 0; r < dim; ++r) {
-    const double *v = job->v[r] + s;
     const double dv = fused ? job->fused_dt * job->gravity[r] : 0.0;
-    MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->momentum[r][p] = mass[p] * (v[p] + dv);
-    if (fused && job->force[r]) {
-      const double *added = job->force[r] + s;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->momentum[r][p] +=
-          job->fused_dt * added[p];
-    }
-    for (int32_t k = 0; affine && k < dim; ++k) {
-      const double *C = job->affine[3 * r + k] + s, *sigma = stress->at[k][r] + s;
+    to->momentum[r] = mass * (mpmi_lanes_load(job->v[r] + s) + dv);
+    if (fused && job->force[r]) to->momentum[r] += job->fused_dt * mpmi_lanes_load(job->force[r] + s);
+    for (int32_t k = 0; moment && k < dim; ++k) {
+      const mpmi_lanes C = mpmi_lanes_load(job->affine[3 * r + k] + s);
       const double h = job->axis[k].spacing;
       const double scale = fused ? -job->fused_dt * MPMI_MLS_INVERSE(width) / h : 0.0;
-      if (!linear) {
-        MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->affine[k][r][p] = mass[p] * C[p];
-      } else if (total && fused) {
-        const double *nominal = to->stress[k][r];
-        MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
-          double growth = mass[p] * C[p] * h - scale * nominal[p];
-          to->affine[k][r][p] = growth;
-          to->momentum[r][p] += W->first[k][p] * growth;
-        }
-      } else {
-        MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
-          double growth = mass[p] * C[p] * h + scale * volume[p] * sigma[p];
-          to->affine[k][r][p] = growth;
-          to->momentum[r][p] += W->first[k][p] * growth;
-        }
+      if (moment == UNEVEN_MOMENT) {
+        to->affine[k][r] = mass * C;
+        continue;
       }
+      if (form != MPMI_SCATTER_4_AFFINE)
+        to->affine[k][r] = mass * C * h;
+      else if (total)
+        to->affine[k][r] = mass * C * h - scale * to->stress[k][r];
+      else
+        to->affine[k][r] = mass * C * h + scale * volume * mpmi_lanes_load(stress->at[k][r] + s);
+      to->momentum[r] += (mpmi_lanes_load(W->first[k] + q) + from) * to->affine[k][r];
     }
   }
 }
 
-/* Packs momentum and force of 1-D or 2-D, four values together. */
-MPMI_INLINE void pack_flat(int32_t dim, int32_t affine, int64_t n, int32_t symmetric, const mpmi_given *given,
-                           mpmi_first_order *of) {
-  const int32_t y = dim > 1;
-  mpmi_pack(n, given->momentum[0], y ? given->momentum[1] : zero, given->force[0], y ? given->force[1] : zero,
-            of->a, 4);
-  for (int32_t k = 0; k < dim; ++k)
-    mpmi_pack(n, affine ? given->affine[k][0] : zero, affine && y ? given->affine[k][1] : zero,
-              k && symmetric ? given->stress[0][k] : given->stress[k][0], y ? given->stress[k][1] : zero,
-              of->column[k], 4);
-}
-
-/* Packs what was given in the order of a node's values. Components that the grid does not have are zero. Of a
- * symmetric stress the lower triangle is there. */
-MPMI_INLINE void pack(int32_t dim, int32_t form, const double *mass, int64_t n, int32_t symmetric,
-                      const mpmi_given *given, mpmi_first_order *of) {
-  const int32_t eight = form >= MPMI_SCATTER_8, affine = is_affine(form);
-  const double *a[8] = {zero, zero, zero, mass, zero, zero, zero, zero};
-  for (int32_t r = 0; r < dim; ++r) a[r] = given->momentum[r], a[4 + r] = given->force[r];
-  if (eight)
-    mpmi_pack8(n, a, of->a);
-  else
-    mpmi_pack(n, a[0], a[1], a[2], a[3], of->a, 4);
-  for (int32_t k = 0; (eight || affine) && k < dim; ++k) {
-    const double *c[8] = {zero, zero, zero, zero, zero, zero, zero, zero};
-    for (int32_t r = 0; r < dim; ++r)
-      c[r] = given->affine[k][r], c[4 + r] = r < k && symmetric ? given->stress[r][k] : given->stress[k][r];
-    if (eight && affine)
-      mpmi_pack8(n, c, of->column[k]);
-    else
-      mpmi_pack(n, c[4 * eight], c[4 * eight + 1], c[4 * eight + 2], zero, of->column[k], 4);
+/* Packs what was given in the order of a node's values, from particle q of the chunk on. */
+MPMI_INLINE void pack(int32_t dim, int32_t form, mpmi_lanes mass, int64_t q, const mpmi_given *given,
+                      mpmi_first_order *of) {
+  const mpmi_lanes zero = {0.0};
+  const int32_t moment = moment_of(form) != NO_MOMENT, flat = is_flat(form);
+  mpmi_lanes a[8] = {zero, zero, zero, zero, zero, zero, zero, zero};
+  const int32_t force = flat ? 2 : 4;
+  for (int32_t r = 0; r < dim; ++r) a[r] = given->momentum[r];
+  for (int32_t r = 0; r < dim && form >= MPMI_SCATTER_8; ++r) a[force + r] = given->force[r];
+  if (!flat) a[3] = mass;
+  pack_values(form, a, 1, q, of->a);
+  for (int32_t k = 0; (form >= MPMI_SCATTER_8 || moment) && k < dim; ++k) {
+    mpmi_lanes c[8] = {zero, zero, zero, zero, zero, zero, zero, zero};
+    for (int32_t r = 0; r < dim && moment; ++r) c[r] = given->affine[k][r];
+    for (int32_t r = 0; r < dim && form >= MPMI_SCATTER_8; ++r) c[force + r] = given->stress[k][r];
+    pack_values(form, c, moment, q, of->column[k]);
   }
 }
 
 /* Computes what the particles of a chunk give, with gradients over reference positions where `total`. */
 MPMI_INLINE void give(int32_t dim, int32_t width, int32_t form, int32_t total, const mpmi_scatter *job,
-                      const mpmi_stress_rows *stress, int64_t s, int64_t n, const mpmi_weights *W,
+                      const mpmi_stress_rows *stress, int64_t begin, int64_t n, const mpmi_weights *W,
                       mpmi_first_order *of) {
-  mpmi_given given;
-  if (total) give_nominal(dim, job, stress, s, n, &given);
-  give_momentum(dim, width, form, total, job, stress, s, n, W, &given);
-  if (form >= MPMI_SCATTER_8) give_force(dim, total, job, stress, s, n, &given);
-  if (is_flat(form))
-    pack_flat(dim, is_affine(form), n, !total, &given, of);
-  else
-    pack(dim, form, job->mass + s, n, !total, &given, of);
+  for (int64_t q = 0; q < mpmi_whole_chunks(n); q += MPMI_LANES) {
+    const int64_t s = begin + q;
+    mpmi_given given;
+    if (total || form >= MPMI_SCATTER_8) give_stress(dim, total, job, stress, s, &given);
+    give_momentum(dim, width, form, total, job, stress, s, q, W, &given);
+    if (form >= MPMI_SCATTER_8) give_force(dim, total, job, s, &given);
+    pack(dim, form, mpmi_lanes_load(job->mass + s), q, &given, of);
+  }
 }
 
 MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t begin,
@@ -369,7 +364,7 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
       else if (form == MPMI_SCATTER_4_AFFINE)
         scatter_linear(dim, width, &W, p, &of, stencil);
       else if (is_flat(form))
-        scatter_flat(dim, width, is_affine(form), &W, inverse_spacing, p, &of, job->mass[s + p], stencil,
+        scatter_flat(dim, width, moment_of(form), &W, inverse_spacing, p, &of, job->mass[s + p], stencil,
                      masses + W.node[p]);
       else
         scatter_first_order(dim, width, form, &W, inverse_spacing, p, &of, stencil);

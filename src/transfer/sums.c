@@ -155,10 +155,8 @@ enum {
 
 /* Sums each of eight registers over its lanes, the first lane first. */
 MPMI_INLINE void sum_lanes(const mpmi_lanes *of, double *sum) {
-  const double *row[8];
-  _Alignas(64) double lane[8 * MPMI_CHUNK];
-  for (int32_t i = 0; i < 8; ++i) row[i] = (const double *)&of[i];
-  mpmi_lanes_turn(row, lane);
+  _Alignas(64) double lane[8 * MPMI_LANES];
+  mpmi_interleave8(of, lane);
   for (int32_t i = 0; i < 8; i += MPMI_LANES) {
     mpmi_lanes total = mpmi_lanes_load(lane + i);
     for (int32_t l = 1; l < MPMI_LANES; ++l) total += mpmi_lanes_load(lane + 8 * l + i);

@@ -1,5 +1,6 @@
-/* Kernels that take another way to the same bits, or to the same but for the order of sums: nodes as two
- * halves, nodes with masses of their own, wave speeds as squares; and which contexts work by halves. */
+/* Kernels that take another way to the same bits, or to the same but for rounding: nodes as two halves, nodes
+ * with masses of their own, matrices by the distances of nodes from the middle one, wave speeds as squares;
+ * and which contexts work by halves. */
 #include "exact.h"
 
 #include <math.h>
@@ -9,13 +10,14 @@
 #include "transfer/kernels.h"
 
 static const double spacing = 0.25;
-enum { N = 3 * MPMI_CHUNK, MOST = 16 * 16 * 16, ROWS = 3 + 3 + 2 + 6 };
+enum { N = 3 * MPMI_CHUNK, MOST = 16 * 16 * 16, ROWS = 3 + 3 + 2 + 6 + 9 };
 
 static mpmi_axis axis_of_block(void) {
   return (mpmi_axis){.spacing = spacing, .inverse_spacing = 1.0 / spacing, .last_cell = 9.0, .middle = 8.5};
 }
 
-/* Particles at random places of some cells, with random velocities, masses, volumes and stresses. */
+/* Particles at random places of some cells, with random velocities, matrices, masses, volumes and
+ * stresses. */
 static mpmi_scatter scatter_of(const mpmi_kernels *kernels, int32_t dim, int32_t width, uint64_t seed,
                                double (*row)[N]) {
   dice d = {seed};
@@ -29,6 +31,7 @@ static mpmi_scatter scatter_of(const mpmi_kernels *kernels, int32_t dim, int32_t
   }
   job.mass = row[6], job.volume = row[7], job.streams.end = N;
   for (int32_t c = 0; c < 6; ++c) job.stress[c] = row[8 + c];
+  for (int32_t c = 0; c < 9; ++c) job.affine[c] = row[14 + c];
   return job;
 }
 
@@ -37,12 +40,14 @@ START_TEST(halves_give_the_same_bits) {
   static double row[ROWS][N], tile[2][8 * MOST];
   if (!has_isa(MPM_ISA_AVX512)) return;
   const mpmi_kernels *kernels = mpmi_kernels_of(MPM_ISA_AVX512);
-  const int32_t width = 2 + _i;
+  const int32_t width = 2 + _i / 2, affine = _i % 2;
+  const int32_t form[2][2] = {{MPMI_SCATTER_8, MPMI_SCATTER_8_HALVES},
+                              {MPMI_SCATTER_8_AFFINE, MPMI_SCATTER_8_AFFINE_HALVES}};
   mpmi_scatter job = scatter_of(kernels, 3, width, 4 + (uint64_t)_i, row);
   memset(tile, 0, sizeof tile);
   for (int32_t halves = 0; halves < 2; ++halves) {
     job.tile = tile[halves];
-    kernels->scatter[3][width][halves ? MPMI_SCATTER_8_HALVES : MPMI_SCATTER_8](&job, 0, N);
+    kernels->scatter[3][width][form[affine][halves]](&job, 0, N);
   }
   ck_assert(memcmp(tile[0], tile[1], sizeof tile[0]) == 0);
   double force = 0.0;
@@ -100,6 +105,69 @@ START_TEST(flat_tiles_have_every_value) {
   double mass = 0.0;
   for (int32_t i = 3; i < 8 * count; i += 8) mass += nodes[i];
   ck_assert(mass > 0.5 * N);
+}
+END_TEST
+
+/* Compares so many values, of which some are not small. */
+static void same_values(const double *a, const double *b, int32_t count) {
+  double most = 0.0;
+  for (int32_t i = 0; i < count; ++i) {
+    ck_within("a value", a[i], b[i], 2e-14);
+    most = fmax(most, fabs(b[i]));
+  }
+  ck_assert(most > 0.1);
+}
+
+/* Where nodes are a spacing apart, momentum grows from one to the next as weights of its own would have it. */
+START_TEST(even_nodes_take_what_all_do) {
+  static double row[ROWS][N], tile[2][8 * MOST];
+  const int32_t isa = MPM_ISA_BASELINE + _i % 4, dim = 1 + _i / 4 % 3, width = 2 + _i / 12;
+  if (!has_isa(isa)) return;
+  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  mpmi_scatter job = scatter_of(kernels, dim, width, 70 + (uint64_t)_i, row);
+  job.need = MPMI_NEED_GRADIENT | MPMI_NEED_MOMENT;
+  memset(tile, 0, sizeof tile);
+  for (int32_t uneven = 0; uneven < 2; ++uneven) {
+    job.tile = tile[uneven];
+    const int32_t eight = uneven ? MPMI_SCATTER_8_UNEVEN : MPMI_SCATTER_8_AFFINE;
+    const int32_t flat = uneven ? MPMI_SCATTER_FLAT_UNEVEN : MPMI_SCATTER_FLAT_AFFINE;
+    kernels->scatter[dim][width][dim == 3 ? eight : flat](&job, 0, N);
+  }
+  same_values(tile[0], tile[1], 8 * MOST);
+}
+END_TEST
+
+/* What particles take back of it is the same as well, where all have the same second moments. */
+START_TEST(even_nodes_give_what_all_do) {
+  static double row[ROWS][N], tile[8 * MOST], taken[2][24][N], volume[N];
+  const int32_t isa = MPM_ISA_BASELINE + _i % 4, dim = 1 + _i / 4 % 3, width = 3 + _i / 12;
+  if (!has_isa(isa)) return;
+  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  const mpmi_scatter of = scatter_of(kernels, dim, width, 90 + (uint64_t)_i, row);
+  dice d = {7 + (uint64_t)_i};
+  for (int32_t i = 0; i < 8 * MOST; ++i) tile[i] = throw_between(&d, -1.0, 1.0);
+  for (int32_t p = 0; p < N; ++p) volume[p] = p % 11 ? 1.0 : 0.0; /* holes take nothing */
+  for (int32_t both = 0; both < 2; ++both) {
+    memset(taken, 0, sizeof taken);
+    for (int32_t varied = 0; varied < 2; ++varied) {
+      mpmi_gather job = {.weights = of.weights,
+                         .need = MPMI_NEED_GRADIENT | (varied ? MPMI_NEED_MOMENT : 0),
+                         .points = of.points,
+                         .initial_volume = volume,
+                         .tile = tile,
+                         .ld = N,
+                         .v = taken[varied][0],
+                         .dv = taken[varied][3],
+                         .streams = {.end = N}};
+      for (int32_t k = 0; k < dim; ++k) job.axis[k] = of.axis[k];
+      for (int32_t e = 0; e < 9; ++e) job.L[e] = taken[varied][6 + e], job.C[e] = taken[varied][15 + e];
+      const int32_t form[2][2] = {{MPMI_GATHER_AFFINE, MPMI_GATHER_AFFINE_VARIED},
+                                  {MPMI_GATHER_BOTH_AFFINE, MPMI_GATHER_BOTH_AFFINE_VARIED}};
+      kernels->gather[dim][width][form[both][varied]](&job, 0, N);
+    }
+    same_values(taken[0][0], taken[1][0], 24 * N);
+    for (int32_t e = 0; e < 24; ++e) ck_assert(taken[0][e][0] == 0.0);
+  }
 }
 END_TEST
 
@@ -164,7 +232,9 @@ END_TEST
 
 TCase *kernels_case(void) {
   TCase *tc = tcase_create("kernels");
-  tcase_add_loop_test(tc, halves_give_the_same_bits, 0, 3);
+  tcase_add_loop_test(tc, halves_give_the_same_bits, 0, 6);
+  tcase_add_loop_test(tc, even_nodes_take_what_all_do, 0, 36);
+  tcase_add_loop_test(tc, even_nodes_give_what_all_do, 0, 24);
   tcase_add_loop_test(tc, flat_tiles_have_every_value, 0, 24);
   tcase_add_loop_test(tc, squares_lead_to_the_same_rate, 0, 12);
   tcase_add_loop_test(tc, only_wide_registers_are_halved, 0, 4);
