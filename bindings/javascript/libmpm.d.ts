@@ -306,9 +306,10 @@ export interface BalanceDesc {
 export interface ContextDesc {
   /**
    * Number of threads, 0 to 1024. 1 (default): the calling thread only; N: a pool of N threads, the calling
-   * one included; 0: one per processor. The pool belongs to the context; its threads sleep when idle and
-   * never spin for longer than a few microseconds. Results do not depend on the number. A build without
-   * threads (MPM_NO_THREADS) takes 0 and 1, or any number with parallel_for, else MPM_E_UNSUPPORTED.
+   * one included; 0: one per processor. The pool belongs to the context; its threads sleep when idle, after
+   * they have looked for work for 100 microseconds, and rest in steps that are over sooner without them.
+   * Results do not depend on the number. A build without threads (MPM_NO_THREADS) takes 0 and 1, or any
+   * number with parallel_for, else MPM_E_UNSUPPORTED.
    *
    * A process that fork() makes between two calls has the context and its objects, but none of the pool's
    * threads: there everything runs on the calling thread, with the same results, and destroying frees as

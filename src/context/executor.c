@@ -204,7 +204,7 @@ static mpm_status run_by_host(const mpm_context_desc *host, int64_t count, mpm_t
 
 /* The system is asked once per call, because to ask takes as long as a small task. */
 static int32_t pool_runs(mpm_context *context) {
-  if (!context->pool) return 0;
+  if (!context->pool || context->pool_rests) return 0;
   if (!context->pool_runs) context->pool_runs = has_threads(context->pool) ? 1 : -1;
   return context->pool_runs > 0;
 }

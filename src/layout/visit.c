@@ -27,6 +27,10 @@ static mpm_status walk_list(const mpmi_step *step, const mpmi_worklist *list, in
                             mpmi_visit_fn visit, void *user) {
   walk w = {list, visit, user};
   if (!list->count) return MPM_OK;
+  if (step->settings->context->pool_rests) { /* the memory of one task stays in the caches */
+    walk_range(&w, 0, 0, list->count);
+    return MPM_OK;
+  }
   return mpmi_run_tasks(step->settings, calls_host, step->settings->tasks, walk_task, &w);
 }
 
@@ -125,5 +129,9 @@ static void range_task(void *data, int64_t k) {
 mpm_status mpmi_visit_ranges(const mpmi_step *step, int32_t calls_host, mpmi_range_fn visit, void *user) {
   ranges r = {&step->layout->worklist[0], visit, user};
   if (!r.list->count) return MPM_OK;
+  if (step->settings->context->pool_rests) {
+    visit(user, 0, r.list->block, r.list->count);
+    return MPM_OK;
+  }
   return mpmi_run_tasks(step->settings, calls_host, step->settings->tasks, range_task, &r);
 }

@@ -219,6 +219,25 @@ static mpm_status finish(mpm_stepper *s) {
   return MPM_OK;
 }
 
+/* ---- short steps -------------------------------------------------------------------------------------- */
+/* A step that takes one thread less than this is as soon over on one: what particles and nodes have is in the
+ * caches of the thread that had them last. Results do not depend on it. */
+#define SHORT_STEP 70e-6
+static double begin_pace(mpm_stepper *s) {
+  s->context->pool_rests = s->pace.is_short;
+  return s->context->pool ? mpmi_seconds() : 0.0;
+}
+
+static void end_pace(mpm_stepper *s, double begun) {
+  s->context->pool_rests = 0;
+  if (!s->context->pool) return;
+  const int32_t is_short = mpmi_seconds() - begun < SHORT_STEP;
+  if (s->pace.is_short || !is_short)
+    s->pace.is_short = is_short;
+  else if (--s->pace.left <= 0)
+    s->pace = (mpmi_pace){.is_short = 1, .left = MPMI_SHORT_STEPS};
+}
+
 /* ---- whole steps -------------------------------------------------------------------------------------- */
 /* Brings particles to the nodes. Only all parts together know whether nodes take the loads of markers. */
 static mpm_status begin_explicit(mpm_stepper *s) {
@@ -243,12 +262,10 @@ static mpm_status run_implicit(mpm_stepper *s) {
   return mpmi_newmark_step(&balance);
 }
 
-mpm_status mpmi_make_step(mpm_stepper *s, mpm_status status, double dt, int32_t is_cut) {
-  status = enter(s, status ? status : check_dt(s, dt), dt);
-  if (status) return status;
+static mpm_status make_step(mpm_stepper *s, double dt, int32_t is_cut) {
   begin(s, dt, 0);
   s->step.is_cut = is_cut;
-  status = set_out(s);
+  mpm_status status = set_out(s);
   if (!status) {
     status = mpmi_is_implicit(&s->settings) ? run_implicit(s) : run_explicit(s);
     status = mpmi_together_end(s, status, exchanges_to(s, MPMI_IDLE));
@@ -257,6 +274,15 @@ mpm_status mpmi_make_step(mpm_stepper *s, mpm_status status, double dt, int32_t 
   if (status) return give_up(s, status);
   mpmi_forget(s->context); /* drops the texts of failed attempts */
   return MPM_OK;
+}
+
+mpm_status mpmi_make_step(mpm_stepper *s, mpm_status status, double dt, int32_t is_cut) {
+  status = enter(s, status ? status : check_dt(s, dt), dt);
+  if (status) return status;
+  const double begun = begin_pace(s);
+  status = make_step(s, dt, is_cut);
+  end_pace(s, begun);
+  return status;
 }
 
 mpm_status mpm_step(mpm_stepper *s, double dt, mpm_step_info *info) {

@@ -49,6 +49,13 @@ typedef struct mpmi_history {
 
 enum { MPMI_NODE_VIEWS = 8 };
 
+/* Whether steps are so short that threads are not worth their while, and how many more that are short on
+ * several come before one shows how long one thread takes. */
+enum { MPMI_SHORT_STEPS = 64 };
+typedef struct mpmi_pace {
+  int32_t is_short, left;
+} mpmi_pace;
+
 struct mpm_stepper {
   uint32_t magic;
   int32_t mapped; /* views of nodal fields that are out */
@@ -65,6 +72,7 @@ struct mpm_stepper {
   mpmi_profile profile;
   mpmi_step step; /* the one under way, if any */
   mpmi_history history;
+  mpmi_pace pace;
   int64_t told_version, told_large; /* layout in which large particles were counted; how many there were */
   int32_t told_unstable;            /* the last equilibrium was told not to be stable */
   mpmi_view_record view[MPMI_NODE_VIEWS];

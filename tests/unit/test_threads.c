@@ -1,8 +1,12 @@
 /* Contexts do not know of each other: several of them step at once on threads of the host, each with its own
- * pool, and give what they give alone. */
+ * pool, and give what they give alone. Steps that are short take one thread. */
+#define _POSIX_C_SOURCE 200809L
 #include <pthread.h>
+#include <stdatomic.h>
+#include <time.h>
 
 #include "body.h"
+#include "stepper/stepper.h"
 
 enum { RUNS = 6, STEPS = 20 };
 
@@ -49,11 +53,85 @@ START_TEST(several_contexts_at_once) {
 }
 END_TEST
 
+/* What callbacks of a step saw: threads other than that of the test, and whether steps are to last. */
+typedef struct witness {
+  pthread_t caller;
+  _Atomic int64_t elsewhere, batches;
+  int32_t naps;
+} witness;
+
+static mpm_status push(void *user, const mpm_particle_batch *batch, double *add) {
+  witness *of = user;
+  atomic_fetch_add(&of->batches, 1);
+  if (!pthread_equal(pthread_self(), of->caller)) atomic_fetch_add(&of->elsewhere, 1);
+  for (int64_t i = 0; i < batch->n; ++i) add[i] += 1e-3;
+  return MPM_OK;
+}
+
+static mpm_status nap(void *user, const mpm_step_info *info) {
+  (void)info;
+  const witness *of = user;
+  const struct timespec moment = {.tv_nsec = 1000000};
+  if (of->naps) nanosleep(&moment, NULL);
+  return MPM_OK;
+}
+
+/* Steps the same cloud on one thread or on two, as if its steps had been short or not; returns its hash. */
+static uint64_t hash_with(int32_t concurrency, int32_t is_short, int32_t naps, mpmi_pace *after) {
+  world_desc d = world_default(2, 40, 0.05);
+  d.context.concurrency = concurrency;
+  d.dt = 1e-5;
+  world w;
+  world_open(&w, &d);
+  world_fill_cube(&w, w.set[0], 0.3, 1.5);
+  witness of = {.caller = pthread_self(), .naps = naps};
+  ck_ok(&w, mpm_stepper_set_force(w.stepper, push, &of));
+  ck_ok(&w, mpm_stepper_set_progress(w.stepper, nap, &of));
+  for (int32_t i = 0; i < 5; ++i) {
+    w.stepper->pace.is_short = is_short;
+    world_steps(&w, 1);
+    ck_assert(!w.context->pool_rests);
+  }
+  ck_assert_int_gt(of.batches, 5); /* there is something to share out */
+  if (is_short) ck_assert_int_eq(of.elsewhere, 0);
+  *after = w.stepper->pace;
+  const uint64_t hash = world_hash(&w);
+  world_close(&w);
+  return hash;
+}
+
+START_TEST(short_steps_take_one_thread) {
+  mpmi_pace after;
+  const uint64_t expected = hash_with(1, 0, 0, &after);
+  ck_assert(hash_with(2, 1, 0, &after) == expected);
+  ck_assert(hash_with(2, 1, 1, &after) == expected);
+  ck_assert_int_eq(after.is_short, 0); /* and the next one is known to last */
+  ck_assert(hash_with(2, 0, 1, &after) == expected);
+  ck_assert_int_eq(after.is_short, 0);
+  ck_assert_int_eq(after.left, MPMI_SHORT_STEPS);
+}
+END_TEST
+
+/* Steps without a particle are short wherever they are made. */
+START_TEST(short_steps_are_found) {
+  world_desc d = world_default(2, 4, 0.25);
+  d.context.concurrency = 2;
+  d.dt = 1e-5;
+  world w;
+  world_open(&w, &d);
+  for (int32_t i = 0; i < 40 * MPMI_SHORT_STEPS && !w.stepper->pace.is_short; ++i) world_steps(&w, 1);
+  ck_assert_int_eq(w.stepper->pace.is_short, 1);
+  world_close(&w);
+}
+END_TEST
+
 Suite *threads_suite(void) {
   Suite *suite = suite_create("threads");
   TCase *tests = tcase_create("threads");
   tcase_set_timeout(tests, 120);
   tcase_add_test(tests, several_contexts_at_once);
+  tcase_add_test(tests, short_steps_take_one_thread);
+  tcase_add_test(tests, short_steps_are_found);
   suite_add_tcase(suite, tests);
   return suite;
 }
