@@ -28,8 +28,8 @@ typedef struct mpm_context_desc {
   uint32_t struct_size; /**< sizeof(mpm_context_desc) of the caller */
   /** Number of threads, 0 to 1024. 1 (default): the calling thread only; N: a pool of N threads, the calling
    * one included; 0: one per processor. The pool belongs to the context; its threads sleep when
-   * idle, after they have looked for work for 100 microseconds, and rest in steps that are over sooner without
-   * them. Results do not depend on the number. A build without
+   * idle, after they have looked for work for 100 microseconds, and rest in steps that are over sooner
+   * without them. Results do not depend on the number. A build without
    * threads (MPM_NO_THREADS) takes 0 and 1, or any number with parallel_for, else MPM_E_UNSUPPORTED.
    *
    * A process that fork() makes between two calls has the context and its objects, but none of the pool's

@@ -6,12 +6,14 @@
  *
  * Summed node by node, row by row, axis by axis. Where D is the same for all particles the moments of C are
  * those about the middle of the stencil, where distances are small integers, moved to the particle at the
- * end; where D can be small the digits lost in moving them would count. Holes have no initial volume and gather zeros. */
+ * end; where D can be small the digits lost in moving them would count. Holes have no initial volume and
+ * gather zeros. */
 #include "simd/pack.h"
 #include "transfer/gather.h"
 
 /* Holds, per particle of a chunk: v; dv; gradients; sums of w v (x_i - x_p), or of w v (i - middle) where D
- * is the same for all. Below three axes two of these share four values: v and dv, and the columns of a matrix. */
+ * is the same for all. Below three axes two of these share four values: v and dv, and the columns of a
+ * matrix. */
 typedef struct mpmi_gathered {
   _Alignas(64) double v[4 * MPMI_CHUNK], dv[4 * MPMI_CHUNK], L[3][4 * MPMI_CHUNK], M[3][4 * MPMI_CHUNK];
 } mpmi_gathered;

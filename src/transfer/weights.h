@@ -38,8 +38,8 @@ typedef struct mpmi_weights {
   int32_t node[MPMI_CHUNK];
 } mpmi_weights;
 
-/* The node of a stencil, counted along an axis, about which moments are taken where nodes are a spacing apart:
- * distances are small integers then, and its own is none. */
+/* The node of a stencil, counted along an axis, about which moments are taken where nodes are a spacing
+ * apart: distances are small integers then, and its own is none. */
 #define MPMI_MIDDLE(width) ((width) > 2 ? 1 : 0)
 
 /* h^2 / D of the MLS form: quadratic and cubic B-splines have D = h^2 / 4 and h^2 / 3 everywhere. */

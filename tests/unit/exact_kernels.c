@@ -118,7 +118,8 @@ static void same_values(const double *a, const double *b, int32_t count) {
   ck_assert(most > 0.1);
 }
 
-/* Where nodes are a spacing apart, momentum grows from one to the next as weights of its own would have it. */
+/* Where nodes are a spacing apart, momentum grows from one to the next as weights of its own would have
+ * it. */
 START_TEST(even_nodes_take_what_all_do) {
   static double row[ROWS][N], tile[2][8 * MOST];
   const int32_t isa = MPM_ISA_BASELINE + _i % 4, dim = 1 + _i / 4 % 3, width = 2 + _i / 12;
