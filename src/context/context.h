@@ -34,7 +34,7 @@ struct mpm_context {
   mpm_context_desc host;             /* the services; alloc and release are always set */
   mpmi_pool *pool;                   /* own threads; NULL when concurrency is 1 or the host has an executor */
   int32_t pool_runs;                 /* in this process: 1, -1: not, 0: this call has not asked yet */
-  int32_t pool_rests;                /* what is under way is over before threads would have taken part */
+  int32_t pool_rests;                /* the step under way is short: the calling thread makes it alone */
   mpm_transport transport;           /* to the other parts; without one there is 1 part */
   double reducing;                   /* seconds in its reduce and gather */
   int32_t apart;                     /* the transport has failed: the other parts are lost */

@@ -170,11 +170,11 @@ void mpmi_lap(mpmi_step *step, int32_t stage, double *from) {
 }
 
 void mpmi_move_samples(mpmi_step *step, int32_t stage) {
-  const int32_t tasks = step->settings->tasks;
+  const int32_t tasks = step->settings->tasks, at_once = step->settings->context->pool_rests ? 1 : tasks;
   double law = 0.0;
   for (int32_t k = 0; k < tasks; ++k) {
-    law += step->work->report[k].law_seconds / tasks;
-    step->profile->seconds[MPMI_TIME_WEIGHTS] += step->work->report[k].weights_seconds / tasks;
+    law += step->work->report[k].law_seconds / at_once;
+    step->profile->seconds[MPMI_TIME_WEIGHTS] += step->work->report[k].weights_seconds / at_once;
   }
   step->profile->seconds[MPMI_TIME_LAW] += law;
   step->profile->seconds[stage] -= law;

@@ -79,8 +79,11 @@ typedef struct mpmi_v4 {
   mpmi_v2 low, high;
 } mpmi_v4;
 
-/* Returns v: there are no multiply-adds. */
+/* Returns v rounded, as above. */
 MPMI_INLINE mpmi_v4 mpmi_round4(mpmi_v4 v) {
+#if defined(__aarch64__)
+  __asm__("" : "+w"(v.low), "+w"(v.high));
+#endif
   return v;
 }
 
@@ -134,8 +137,8 @@ MPMI_INLINE mpmi_v4 mpmi_fma_pair4(mpmi_v4 a, double first, double last, mpmi_v4
 }
 #endif
 
-/* The values of a node: four (LOW) or eight (BOTH). Operands whose lower half is zero may be taken as HIGH.
- * The part is always a constant. */
+/* The values of a node: four (LOW) or eight (BOTH). Operands whose lower half, or the factor of it, is zero
+ * may be taken as HIGH. The part is always a constant. */
 enum { MPMI_LOW = 1, MPMI_HIGH = 2, MPMI_BOTH = 3 };
 
 #if MPMI_WIDTH == 8
@@ -245,18 +248,17 @@ MPMI_INLINE mpmi_node mpmi_node_round(int32_t part, mpmi_node v) {
 /* a + b and a - b in the lower half; the upper one is that of a. b is rounded first. */
 MPMI_INLINE mpmi_node mpmi_node_add_low(int32_t part, mpmi_node a, mpmi_node b) {
   if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(a.four + mpmi_round4(b.four), a.high);
-  return mpmi_node_of8(_mm512_mask_add_pd(a.eight, 0x0f, a.eight, b.eight));
+  return mpmi_node_of8(_mm512_mask_add_pd(a.eight, 0x0f, a.eight, mpmi_node_round(part, b).eight));
 }
 MPMI_INLINE mpmi_node mpmi_node_subtract_low(int32_t part, mpmi_node a, mpmi_node b) {
   if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(a.four - mpmi_round4(b.four), a.high);
-  return mpmi_node_of8(_mm512_mask_sub_pd(a.eight, 0x0f, a.eight, b.eight));
+  return mpmi_node_of8(_mm512_mask_sub_pd(a.eight, 0x0f, a.eight, mpmi_node_round(part, b).eight));
 }
 MPMI_INLINE mpmi_pair mpmi_pair_of(double low, double high) {
   return (mpmi_pair){low, low, low, low, high, high, high, high};
 }
 MPMI_INLINE mpmi_node mpmi_node_fma_pair(int32_t part, mpmi_node a, mpmi_pair s, mpmi_node b) {
   if (part == MPMI_HALVES_HIGH) return mpmi_node_of_halves(a.four, a.high + s[4] * b.high);
-  if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(a.four + s[0] * b.four, a.high + s[4] * b.high);
   return mpmi_node_of8(a.eight + s * b.eight);
 }
 

@@ -53,7 +53,6 @@ static int32_t finds_only_C(const mpmi_batch *b) {
 }
 
 /* ---- before the batches of a set ---------------------------------------------------------------------- */
-
 /* Tells whether anything reads the rows of the gradient after the gather. */
 static int32_t reads_gradient(const mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;

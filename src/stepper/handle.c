@@ -52,7 +52,7 @@ mpm_status mpm_stepper_create(mpm_context *context, mpm_grid *grid, const mpm_st
                                 .transfer = mpmi_transfer_of(d.transfer)};
   for (int32_t face = 0; face < 2 * grid->dim; ++face)
     if (mpmi_is_axis_face(grid, face)) s->settings.wall[face].kind = MPM_WALL_SLIP;
-  s->pace.left = MPMI_SHORT_STEPS;
+  s->pace = (mpmi_pace){.bound = MPMI_SHORT_STEP, .left = MPMI_SHORT_STEPS, .wait = MPMI_SHORT_STEPS};
   s->history.last.set = -1;
   s->history.last.particle = s->history.last.node = -1;
   s->nodes.shown = -1;

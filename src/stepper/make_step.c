@@ -220,9 +220,6 @@ static mpm_status finish(mpm_stepper *s) {
 }
 
 /* ---- short steps -------------------------------------------------------------------------------------- */
-/* A step that takes one thread less than this is as soon over on one: what particles and nodes have is in the
- * caches of the thread that had them last. Results do not depend on it. */
-#define SHORT_STEP 70e-6
 static double begin_pace(mpm_stepper *s) {
   s->context->pool_rests = s->pace.is_short;
   return s->context->pool ? mpmi_seconds() : 0.0;
@@ -231,11 +228,16 @@ static double begin_pace(mpm_stepper *s) {
 static void end_pace(mpm_stepper *s, double begun) {
   s->context->pool_rests = 0;
   if (!s->context->pool) return;
-  const int32_t is_short = mpmi_seconds() - begun < SHORT_STEP;
-  if (s->pace.is_short || !is_short)
-    s->pace.is_short = is_short;
-  else if (--s->pace.left <= 0)
-    s->pace = (mpmi_pace){.is_short = 1, .left = MPMI_SHORT_STEPS};
+  mpmi_pace *pace = &s->pace;
+  const int32_t is_short = mpmi_seconds() - begun < pace->bound;
+  if (!pace->is_short) {
+    if (is_short && --pace->left <= 0) pace->is_short = 1; /* the next step shows whether it is */
+    return;
+  }
+  const int32_t longer = 2 * pace->wait < MPMI_MOST_STEPS ? 2 * pace->wait : MPMI_MOST_STEPS;
+  pace->wait = is_short ? MPMI_SHORT_STEPS : longer;
+  pace->left = pace->wait;
+  pace->is_short = is_short;
 }
 
 /* ---- whole steps -------------------------------------------------------------------------------------- */

@@ -49,11 +49,16 @@ typedef struct mpmi_history {
 
 enum { MPMI_NODE_VIEWS = 8 };
 
-/* Whether steps are so short that threads are not worth their while, and how many more that are short on
- * several come before one shows how long one thread takes. */
-enum { MPMI_SHORT_STEPS = 64 };
+/* A step that takes one thread less than this, in seconds, is as soon over on one: what particles and nodes
+ * have is in the caches of the thread that had them last. Results do not depend on it. */
+#define MPMI_SHORT_STEP 70e-6
+/* Whether steps take one thread less than `bound`, as far as is known, and then are made by one. `left` more
+ * that take several threads less come before one step shows how long one thread takes. Where that is not
+ * short, the next `wait` is twice as long. */
+enum { MPMI_SHORT_STEPS = 64, MPMI_MOST_STEPS = 4096 };
 typedef struct mpmi_pace {
-  int32_t is_short, left;
+  double bound;
+  int32_t is_short, left, wait;
 } mpmi_pace;
 
 struct mpm_stepper {

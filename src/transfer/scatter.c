@@ -273,8 +273,8 @@ MPMI_INLINE void give_force(int32_t dim, int32_t total, const mpmi_scatter *job,
 }
 
 /* Computes momentum, for the particles from s in the set and q in the chunk on. Where nodes are a spacing
- * apart: m (v + C d) at the first node, or with 8 values at the middle one, and m C h per node of each axis;
- * with 4 values the fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Elsewhere the columns of
+ * apart: m (v + C d) at the first node in form 4, at the middle one in others, and m C h per node of each
+ * axis; in form 4 the fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Elsewhere the columns of
  * m C. */
 MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, int32_t total,
                                const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s, int64_t q,

@@ -105,22 +105,41 @@ START_TEST(short_steps_take_one_thread) {
   const uint64_t expected = hash_with(1, 0, 0, &after);
   ck_assert(hash_with(2, 1, 0, &after) == expected);
   ck_assert(hash_with(2, 1, 1, &after) == expected);
-  ck_assert_int_eq(after.is_short, 0); /* and the next one is known to last */
+  ck_assert_int_eq(after.is_short, 0);               /* and the next one is known to last */
+  ck_assert_int_eq(after.wait, MPMI_MOST_STEPS / 2); /* five were tried on one thread: 64 * 2^5 */
   ck_assert(hash_with(2, 0, 1, &after) == expected);
   ck_assert_int_eq(after.is_short, 0);
   ck_assert_int_eq(after.left, MPMI_SHORT_STEPS);
 }
 END_TEST
 
-/* Steps without a particle are short wherever they are made. */
+/* Steps that are short on several threads lead to one on one thread, which shows whether it is short there,
+ * too; where it is not, it takes twice as many to another. */
 START_TEST(short_steps_are_found) {
   world_desc d = world_default(2, 4, 0.25);
   d.context.concurrency = 2;
   d.dt = 1e-5;
   world w;
   world_open(&w, &d);
-  for (int32_t i = 0; i < 40 * MPMI_SHORT_STEPS && !w.stepper->pace.is_short; ++i) world_steps(&w, 1);
-  ck_assert_int_eq(w.stepper->pace.is_short, 1);
+  mpmi_pace *pace = &w.stepper->pace;
+  for (int32_t round = 0, wait = MPMI_SHORT_STEPS; round < 9; ++round) {
+    pace->bound = INFINITE;
+    for (int32_t i = 0; i < wait; ++i) {
+      ck_holds(!pace->is_short && pace->left == wait - i);
+      world_steps(&w, 1);
+    }
+    ck_assert_int_eq(pace->is_short, 1);
+    pace->bound = 0.0;
+    world_steps(&w, 1);
+    ck_assert_int_eq(pace->is_short, 0);
+    wait = wait < MPMI_MOST_STEPS ? 2 * wait : wait;
+    ck_assert_int_eq(pace->wait, wait);
+  }
+  world_steps(&w, 3);
+  ck_assert_int_eq(pace->left, MPMI_MOST_STEPS); /* steps that are long count for nothing */
+  pace->bound = INFINITE, pace->left = 1;
+  world_steps(&w, 2);
+  ck_assert(pace->is_short == 1 && pace->wait == MPMI_SHORT_STEPS);
   world_close(&w);
 }
 END_TEST

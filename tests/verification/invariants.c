@@ -44,6 +44,7 @@ static outcome collide(int variant, int threads, int transfer) {
   verify_ok(&w, mpm_context_create(&desc, &w.context));
   verify_ok(&w, mpm_grid_create(w.context, &setup.grid, &w.grid));
   verify_ok(&w, mpm_stepper_create(w.context, w.grid, &setup.stepper, &w.stepper));
+  verify_watch(&w);
   mpm_particles *disks = verify_set(&w, verify_elastic(&w, "neo_hookean", 1000.0, 0.3, 1000.0));
   const double shift = variant == MOVED ? h / 3.0 : 0.0;
   one_disk(&w, disks, 1.0, variant == TURNED, shift, h);

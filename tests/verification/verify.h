@@ -71,6 +71,8 @@ typedef struct verify_world {
 verify_setup verify_defaults(int32_t dim, int64_t cells, double h);
 void verify_use(verify_setup *setup, const verify_scheme *scheme, int32_t transfer);
 void verify_open(verify_world *w, const verify_setup *setup); /* on one thread */
+/* Looks at the contact of all steps to come, as verify_open() has it done. */
+void verify_watch(const verify_world *w);
 mpm_material *verify_material(verify_world *w, const char *model, const mpm_param *params, int32_t count);
 mpm_material *verify_elastic(verify_world *w, const char *model, double E, double nu, double density);
 mpm_particles *verify_set(verify_world *w, mpm_material *material); /* an empty one, in the stepper */
