@@ -144,6 +144,29 @@ START_TEST(short_steps_are_found) {
 }
 END_TEST
 
+/* Seconds of tasks pass side by side, unless one thread has made them all. */
+START_TEST(samples_know_of_resting_threads) {
+  world_desc d = world_default(2, 4, 0.25);
+  d.context.concurrency = 2;
+  world w;
+  world_open(&w, &d);
+  mpm_stepper *s = w.stepper;
+  mpmi_step step = {.settings = &s->settings, .work = &s->work, .profile = &s->profile};
+  for (int32_t rests = 0; rests < 2; ++rests) {
+    memset(&s->profile, 0, sizeof s->profile);
+    w.context->pool_rests = rests;
+    for (int32_t k = 0; k < 2; ++k) s->work.report[k].law_seconds = s->work.report[k].weights_seconds = 2.0;
+    mpmi_move_samples(&step, MPMI_TIME_G2P);
+    const double *seconds = s->profile.seconds, expected = rests ? 4.0 : 2.0;
+    ck_assert(seconds[MPMI_TIME_LAW] == expected && seconds[MPMI_TIME_WEIGHTS] == expected);
+    ck_assert(seconds[MPMI_TIME_G2P] == -expected);
+  }
+  w.context->pool_rests = 0;
+  mpmi_reports_clear(&s->work, 2);
+  world_close(&w);
+}
+END_TEST
+
 Suite *threads_suite(void) {
   Suite *suite = suite_create("threads");
   TCase *tests = tcase_create("threads");
@@ -151,6 +174,7 @@ Suite *threads_suite(void) {
   tcase_add_test(tests, several_contexts_at_once);
   tcase_add_test(tests, short_steps_take_one_thread);
   tcase_add_test(tests, short_steps_are_found);
+  tcase_add_test(tests, samples_know_of_resting_threads);
   suite_add_tcase(suite, tests);
   return suite;
 }
