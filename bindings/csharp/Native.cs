@@ -1187,7 +1187,8 @@ namespace Mpm {
     public long n;
     /// <summary>distance from component c to c + 1, in elements; &gt;= n.</summary>
     public long ld;
-    /// <summary>time at the start of the step.</summary>
+    /// <summary>time at the start of the step; in implicit steps with contact once more at its end, for particles
+    /// that have moved.</summary>
     public double t;
     /// <summary>[dim][ld].</summary>
     public double* position;

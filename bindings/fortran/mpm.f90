@@ -933,7 +933,8 @@ module mpm
     integer(c_int64_t) :: n
     !> distance from component c to c + 1, in elements; >= n.
     integer(c_int64_t) :: ld
-    !> time at the start of the step.
+    !> time at the start of the step; in implicit steps with contact once more at its end, for particles that have
+    !! moved.
     real(c_double) :: t
     !> [dim][ld].
     type(c_ptr) :: position

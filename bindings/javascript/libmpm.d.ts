@@ -1042,7 +1042,10 @@ export interface DistanceBatch {
   readonly n: number;
   /** distance from component c to c + 1, in elements; >= n */
   readonly ld: number;
-  /** time at the start of the step */
+  /**
+   * time at the start of the step; in implicit steps with contact once more at its end, for particles that
+   * have moved
+   */
   readonly t: number;
   /** [dim][ld] */
   readonly position: Float64Array[];

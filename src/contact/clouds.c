@@ -198,7 +198,7 @@ static void find_stencil(const cloud_particles *of, const mpm_grid *grid, int32_
 static void pull_back(const cloud_particles *of, const mpm_grid *grid, int64_t p, double *gradient) {
   const int32_t dim = grid->dim, first = 3 - dim;
   double inverse[3][3];
-  mpmi_inverse_at(of->set, of->slot + p, inverse);
+  mpmi_inverse_at(of->set, 0, of->slot + p, inverse);
   const double G[3] = {gradient[0], gradient[1], gradient[2]};
   for (int32_t j = 0; j < dim; ++j) {
     gradient[first + j] = 0.0;
@@ -345,6 +345,12 @@ static void visit_task(void *data, int64_t k) {
       if (mpmi_colour_of(layout->blocks.grid->dim, layout->blocks.coord[parts->ghost[g].block]) == c)
         visit_if_reached(job, k, parts->ghost[g].block, &own);
   }
+}
+
+void mpmi_contact_way(const mpmi_contact_search *search, const mpmi_party *party, double *way) {
+  const mpm_grid *grid = search->step->layout->blocks.grid;
+  for (int32_t k = 0; k < grid->dim; ++k)
+    way[k] = search->step->dt * mpmi_velocity(search->values, party->slot)[k] * grid->inverse_spacing[k];
 }
 
 double mpmi_party_radius(const mpmi_layout *layout, const mpmi_contact_nodes *contact,

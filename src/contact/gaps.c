@@ -40,7 +40,7 @@ typedef struct edges_in_turn {
 /* Collects particles in a row from `at` on, up to the first of another set, and returns how many. */
 static int64_t collect_set(around *of, const mpmi_cloud_frame *frame, const mpm_particles *set,
                            const mpmi_cloud_entry *entry, int64_t count, int64_t at, edges_in_turn *edges) {
-  const double *position = mpmi_f64(set, MPMI_POSITION, 0);
+  const double *position = mpmi_f64(set, MPMI_POSITION, of->search->copy);
   const int32_t member = entry->member;
   int64_t e = 0;
   for (; e < count && entry[e].member == member; ++e) {
@@ -123,7 +123,7 @@ static void reach_out(const around *of, int32_t which, const double *n, double e
         const mpmi_cloud_entry *entry = &contact->entry[e + list[l]];
         if (along + half <= most[which]) continue;
         if (entry->member != member)
-          widths = mpmi_widths_of(mpmi_resident_set(layout, member = entry->member));
+          widths = mpmi_widths_of(mpmi_resident_set(layout, member = entry->member), of->search->copy);
         const double edge = of->half_edge[at + list[l]];
         const double far = along + mpmi_half_width(&widths, entry->slot, edge, seen);
         most[which] = far > most[which] ? far : most[which];
@@ -201,6 +201,16 @@ static double relative_speed(const around *of) {
   return sqrt(squared);
 }
 
+/* Improves a normal by regression, where that ends. */
+static void fit_normal(around *of, double *normal) {
+  const mpm_grid *grid = of->search->step->layout->blocks.grid;
+  double fitted[3];
+  if (!of->search->step->settings->kernels->fit[grid->dim](&of->points)) return;
+  normal_of_plane(grid, of->points.plane, fitted);
+  if (!(fitted[0] - fitted[0] + fitted[1] - fitted[1] + fitted[2] - fitted[2] == 0.0)) return;
+  for (int32_t k = 0; k < 3; ++k) normal[k] = fitted[k];
+}
+
 /* Finds the normal by the particles. Returns 0 where there is none; open becomes 1 where the bodies are too
  * far apart to need a better one than that of the discriminant. */
 static int32_t plane_normal(around *of, mpmi_touch *touch) {
@@ -220,12 +230,7 @@ static int32_t plane_normal(around *of, mpmi_touch *touch) {
     touch->open = gap > least;
     if (touch->open) touch->gap = gap;
   }
-  if (touch->open || touch->rule->normal == MPM_NORMAL_DISCRIMINANT) return 1;
-  double fitted[3];
-  if (!kernels->fit[grid->dim](&of->points)) return 1;
-  normal_of_plane(grid, of->points.plane, fitted);
-  if (!(fitted[0] - fitted[0] + fitted[1] - fitted[1] + fitted[2] - fitted[2] == 0.0)) return 1;
-  for (int32_t k = 0; k < 3; ++k) touch->normal[k] = fitted[k];
+  if (!touch->open && touch->rule->normal != MPM_NORMAL_DISCRIMINANT) fit_normal(of, touch->normal);
   return 1;
 }
 
@@ -238,16 +243,12 @@ static int32_t find_normal(around *of, const double *gradient, mpmi_touch *touch
   return 1;
 }
 
-static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, double *memory) {
+/* Collects the particles around a touch. */
+static around around_touch(const mpmi_contact_search *search, const mpmi_touch *touch, double *memory) {
   const mpmi_contact_nodes *contact = search->contact;
-  const mpm_grid *grid = search->step->layout->blocks.grid;
   around of = {.search = search,
                .party = {&contact->party[touch->party[0]], &contact->party[touch->party[1]]},
                .offset = touch->rule->offset};
-  touch->open = touch->ambiguous = 0;
-  touch->gap = (double)INFINITY;
-  touch->friction = touch->rule->friction;
-  touch->friction_static = fmax(touch->rule->friction, touch->rule->friction_static);
   int64_t first = 0;
   for (int32_t c = 0; c < 2; ++c) {
     of.points.count[c] = party_particles(contact, of.party[c]);
@@ -261,7 +262,18 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, dou
   of.far = memory + 5 * first;
   collect(&of, 0);
   collect(&of, 1);
+  return of;
+}
+
+static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, double *memory) {
+  const mpmi_contact_nodes *contact = search->contact;
+  const mpm_grid *grid = search->step->layout->blocks.grid;
+  around of = around_touch(search, touch, memory);
   double gradient[3], along = 0.0;
+  touch->open = touch->ambiguous = 0;
+  touch->gap = (double)INFINITY;
+  touch->friction = touch->rule->friction;
+  touch->friction_static = fmax(touch->rule->friction, touch->rule->friction_static);
   mean_gradient(&of, 1, gradient);
   if (!find_normal(&of, gradient, touch)) {
     touch->open = touch->ambiguous = touch->rule->kind != MPM_CONTACT_TIED;
@@ -275,6 +287,26 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, dou
   if (touch->open || touch->rule->kind == MPM_CONTACT_TIED) return;
   touch->gap = gap_along(&of, touch->normal, 0, -(double)INFINITY);
   if (!mpmi_detects_by_velocity(touch->rule)) touch->open = !(touch->gap <= grid->h_min);
+}
+
+/* Finds the gap of a touch once more, where its node is a point of the second body that has moved along.
+ * Weights of particles, and a normal by gradients, stay those of the start. */
+static void find_gap_after(const mpmi_contact_search *search, mpmi_touch *touch, double *memory) {
+  const mpm_grid *grid = search->step->layout->blocks.grid;
+  const int32_t rule = touch->rule->normal;
+  double normal[3] = {touch->normal[0], touch->normal[1], touch->normal[2]}, moved[3];
+  around of = around_touch(search, touch, memory);
+  mpmi_contact_way(search, of.party[1], moved);
+  for (int32_t k = 0; k < grid->dim; ++k)
+    for (int32_t which = 0; which < 2; ++which)
+      for (int64_t p = of.points.first[which]; p < of.points.first[which] + of.points.count[which]; ++p)
+        of.x[k][p] -= moved[k];
+  if ((rule == MPM_NORMAL_LOGISTIC || rule == MPM_NORMAL_DISCRIMINANT) &&
+      search->step->settings->kernels->discriminate[grid->dim](&of.points)) {
+    normal_of_plane(grid, of.points.plane, normal);
+    if (rule == MPM_NORMAL_LOGISTIC) fit_normal(&of, normal);
+  }
+  touch->gap_after = gap_along(&of, normal, 0, -(double)INFINITY);
 }
 
 /* Asks for the particles of a touch of bodies, which were written some time ago. */
@@ -296,6 +328,22 @@ static void find_task(void *data, int64_t k) {
       if (i + 1 < contact->touch_count) fetch_touch(contact, &contact->touch[i + 1]);
       find_touch(search, &contact->touch[i], contact->work + k * contact->work_each);
     }
+}
+
+static void find_task_after(void *data, int64_t k) {
+  const mpmi_contact_search *search = data;
+  mpmi_contact_nodes *contact = search->contact;
+  const int32_t tasks = search->step->settings->tasks;
+  for (int64_t i = 0; i < contact->touch_count; ++i)
+    if (i / IN_TURN % tasks == k && contact->touch[i].closed &&
+        contact->touch[i].rule->kind == MPM_CONTACT_UNILATERAL &&
+        !mpmi_is_of_surface(contact, &contact->touch[i]))
+      find_gap_after(search, &contact->touch[i], contact->work + k * contact->work_each);
+}
+
+mpm_status mpmi_gaps_find_after(mpmi_contact_search *search) {
+  const mpmi_settings *settings = search->step->settings;
+  return mpmi_run_tasks(settings, 0, settings->tasks, find_task_after, search);
 }
 
 mpm_status mpmi_gaps_find(mpmi_contact_search *search) {

@@ -18,18 +18,18 @@ typedef struct mpmi_widths {
   int32_t total; /* the most is that of particles as they were */
 } mpmi_widths;
 
-static inline mpmi_widths mpmi_widths_of(const mpm_particles *set) {
+static inline mpmi_widths mpmi_widths_of(const mpm_particles *set, int32_t copy) {
   const mpm_grid *grid = set->grid;
   return (mpmi_widths){.dim = grid->dim,
                        .ld = set->ld,
-                       .F = mpmi_f64(set, MPMI_F, 0),
+                       .F = mpmi_f64(set, MPMI_F, copy),
                        .size = mpmi_has_domains(grid) ? mpmi_f64(set, MPMI_SIZE, 0) : NULL,
                        .most = 0.5 * grid->h_min,
                        .total = mpmi_is_total_lagrangian(grid)};
 }
 
 /* Inverts F of a particle, the components on axes of the grid alone. */
-void mpmi_inverse_at(const mpm_particles *set, int64_t slot, double inverse[3][3]);
+void mpmi_inverse_at(const mpm_particles *set, int32_t copy, int64_t slot, double inverse[3][3]);
 
 /* Half-width of a particle along a unit vector: that of a ball, or with a field "size" of a box, that F
  * has deformed; at most half a cell, which on a total Lagrangian grid deforms with it. n: as the particle

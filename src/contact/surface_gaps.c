@@ -12,7 +12,9 @@ static const double near_enough = 2.0;
 
 typedef struct surface_job {
   mpmi_contact_search *search;
-  int32_t surface;
+  int32_t number;
+  mpmi_rigid_surface surface; /* where it is at that time */
+  double t;
 } surface_job;
 
 /* ---- clearances of particles --------------------------------------------------------------------------- */
@@ -35,20 +37,21 @@ static void clear_chunk(const surface_job *job, const mpmi_residents *in, int64_
   const mpmi_contact_nodes *contact = job->search->contact;
   const mpm_particles *set = in->set;
   const mpm_grid *grid = set->grid;
-  const mpmi_widths widths = mpmi_widths_of(set);
+  const int32_t copy = job->search->copy;
+  const mpmi_widths widths = mpmi_widths_of(set, copy);
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   double *clearance = contact->clearance + contact->clearance_first[in->member];
-  mpmi_distances points = {.n = 0, .t = job->search->step->t};
+  mpmi_distances points = {.n = 0, .t = job->t};
   mpmi_distance_fault fault;
   int64_t slot[MPMI_DISTANCE_POINTS];
   for (int64_t s = begin; s < end; ++s) {
     if (id[s] < 0) continue;
     for (int32_t k = 0; k < grid->dim; ++k)
-      points.position[k][points.n] = mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + s];
+      points.position[k][points.n] = mpmi_f64(set, MPMI_POSITION, copy)[k * set->ld + s];
     slot[points.n++] = s;
   }
   if (!points.n) return;
-  if (mpmi_surface_distances(&contact->surface[job->surface], &points, &fault)) {
+  if (mpmi_surface_distances(&job->surface, &points, &fault)) {
     note_fault(job, in, &fault, slot, failure);
     return;
   }
@@ -70,11 +73,11 @@ static void clear_block(void *user, const mpmi_visit *visit) {
   mpmi_failure *failure = &job->search->step->work->report[visit->task].failure;
   const mpmi_layout *layout = job->search->step->layout;
   const mpmi_contact_nodes *contact = job->search->contact;
-  const mpmi_rigid_surface *surface = &contact->surface[job->surface];
   const mpm_grid *grid = layout->blocks.grid;
   half_edge_cache last = {-1.0, 0.0};
-  /* stencils and drift take particles less than three spacings out of their block's nodes */
-  const int32_t far = mpmi_block_is_far(&layout->blocks, block, 3, surface, near_enough * grid->h_min);
+  /* stencils and drift take particles less than three spacings out of their block's nodes, steps any way */
+  const int32_t far = !job->search->copy &&
+                      mpmi_block_is_far(&layout->blocks, block, 3, &job->surface, near_enough * grid->h_min);
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const mpmi_residents in = mpmi_residents_of(layout, m, block);
     double *clearance = contact->clearance + contact->clearance_first[in.member];
@@ -89,10 +92,10 @@ static void clear_block(void *user, const mpmi_visit *visit) {
 /* ---- gaps ---------------------------------------------------------------------------------------------- */
 /* Finds the direction in which what lies along n now lay before the material deformed, as a cloud that is a
  * mirror image sees it: that of F^-1 n. */
-static void pull_direction(const mpm_particles *set, int64_t slot, int32_t mirrored, const double *n,
-                           double *direction) {
+static void pull_direction(const mpm_particles *set, int32_t copy, int64_t slot, int32_t mirrored,
+                           const double *n, double *direction) {
   double inverse[3][3], sign[3], squared = 0.0;
-  mpmi_inverse_at(set, slot, inverse);
+  mpmi_inverse_at(set, copy, slot, inverse);
   for (int32_t k = 0; k < 3; ++k) sign[k] = mirrored >> k & 1 ? -1.0 : 1.0;
   for (int32_t i = 0; i < 3; ++i) {
     direction[i] = 0.0;
@@ -114,7 +117,9 @@ static int32_t is_beside(const mpm_grid *grid, const double *x, const double *n)
   return grid->dim == 1 || squared <= MPMI_CONTACT_REACH * MPMI_CONTACT_REACH;
 }
 
-static double gap_of(const mpmi_contact_search *search, const mpmi_party *party, const double *n) {
+/* moved: the way of the node, in cells, by which particles have moved along, or NULL. */
+static double gap_of(const mpmi_contact_search *search, const mpmi_party *party, const double *n,
+                     const double *moved) {
   const mpmi_layout *layout = search->step->layout;
   const mpmi_contact_nodes *contact = search->contact;
   double gap = (double)INFINITY;
@@ -127,9 +132,11 @@ static double gap_of(const mpmi_contact_search *search, const mpmi_party *party,
       const double clearance = contact->clearance[contact->clearance_first[entry->member] + entry->slot];
       if (!(clearance < gap)) continue;
       const mpm_particles *set = mpmi_resident_set(layout, entry->member);
-      mpmi_cloud_place(&frame, mpmi_places(set, 0), set->ld, entry->slot, x);
+      mpmi_cloud_place(&frame, mpmi_places(set, search->copy), set->ld, entry->slot, x);
+      for (int32_t k = 0; k < frame.dim && moved; ++k) x[k] -= moved[k];
       double along[3] = {n[0], n[1], n[2]};
-      if (mpmi_is_total_lagrangian(set->grid)) pull_direction(set, entry->slot, cloud->mirrored, n, along);
+      if (mpmi_is_total_lagrangian(set->grid))
+        pull_direction(set, search->copy, entry->slot, cloud->mirrored, n, along);
       if (is_beside(layout->blocks.grid, x, along)) gap = clearance;
     }
   }
@@ -155,18 +162,29 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch) {
   touch->friction_static = fmax(touch->rule->friction, touch->rule->friction_static);
   touch->area =
       area_of(contact, party, touch->normal) * mpmi_party_radius(search->step->layout, contact, party);
-  touch->gap = gap_of(search, party, touch->normal);
+  touch->gap = gap_of(search, party, touch->normal, NULL);
   touch->open =
       touch->rule->kind == MPM_CONTACT_UNILATERAL && !(touch->gap <= search->step->settings->grid->h_min);
+}
+
+/* Finds the gap of a closed touch once more; places on a total Lagrangian grid do not move. */
+static void find_gap_after(const mpmi_contact_search *search, mpmi_touch *touch) {
+  const mpmi_party *party = &search->contact->party[touch->party[1]];
+  double moved[3];
+  if (!touch->closed || touch->rule->kind != MPM_CONTACT_UNILATERAL) return;
+  mpmi_contact_way(search, party, moved);
+  touch->gap_after = gap_of(search, party, touch->normal,
+                            mpmi_is_total_lagrangian(search->step->layout->blocks.grid) ? NULL : moved);
 }
 
 static void gap_task(void *data, int64_t k) {
   const surface_job *job = data;
   const mpmi_contact_nodes *contact = job->search->contact;
-  const int64_t *first = contact->by_surface + job->surface;
+  const int64_t *first = contact->by_surface + job->number;
   const mpmi_share share = mpmi_share_of(job->search->step->settings, first[1] - first[0], k);
   const int64_t *list = contact->by_surface + contact->surface_count + 1 + first[0];
-  for (int64_t i = share.begin; i < share.end; ++i) find_touch(job->search, &contact->touch[list[i]]);
+  for (int64_t i = share.begin; i < share.end; ++i)
+    (job->search->copy ? find_gap_after : find_touch)(job->search, &contact->touch[list[i]]);
 }
 
 /* ---- surface by surface -------------------------------------------------------------------------------- */
@@ -206,22 +224,44 @@ static mpm_status reserve_clearances(const mpmi_contact_search *search) {
   return MPMI_RESERVE_MORE(c, contact->clearance, contact->clearance_capacity, slots);
 }
 
+/* Finds the gaps of all touches of a surface. */
+static mpm_status find_gaps_of(surface_job *job) {
+  const mpmi_contact_search *search = job->search;
+  const uint8_t *in_reach = search->contact->in_reach;
+  const int32_t asks = job->surface.shape == MPM_SHAPE_DISTANCE;
+  mpm_status status = mpmi_visit_marked(search->step, in_reach, asks, clear_block, job);
+  if (!status) status = mpmi_visit_ghosts(search->step, in_reach, asks, clear_block, job);
+  if (!status) status = mpmi_step_failure(search->step);
+  if (!status)
+    status = mpmi_run_tasks(search->step->settings, 0, search->step->settings->tasks, gap_task, job);
+  return status;
+}
+
+static int32_t has_touches(const mpmi_contact_nodes *contact, int32_t i) {
+  return contact->by_surface[i] < contact->by_surface[i + 1];
+}
+
 mpm_status mpmi_surface_gaps_find(mpmi_contact_search *search) {
-  const mpmi_settings *settings = search->step->settings;
   const mpmi_contact_nodes *contact = search->contact;
   if (!contact->near_count) return MPM_OK;
   mpm_status status = list_touches(search);
   if (!status) status = reserve_clearances(search);
   for (int32_t i = 0; i < contact->surface_count && !status; ++i) {
-    surface_job job = {search, i};
-    if (contact->by_surface[i] == contact->by_surface[i + 1]) continue;
-    status = mpmi_visit_marked(search->step, contact->in_reach,
-                               contact->surface[i].shape == MPM_SHAPE_DISTANCE, clear_block, &job);
-    if (!status)
-      status = mpmi_visit_ghosts(search->step, contact->in_reach,
-                                 contact->surface[i].shape == MPM_SHAPE_DISTANCE, clear_block, &job);
-    if (!status) status = mpmi_step_failure(search->step);
-    if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, gap_task, &job);
+    surface_job job = {search, i, contact->surface[i], search->step->t};
+    if (has_touches(contact, i)) status = find_gaps_of(&job);
+  }
+  return status;
+}
+
+mpm_status mpmi_surface_gaps_find_after(mpmi_contact_search *search) {
+  const mpmi_contact_nodes *contact = search->contact;
+  const mpmi_step *step = search->step;
+  mpm_status status = MPM_OK;
+  if (!contact->near_count || !contact->touch_count) return MPM_OK;
+  for (int32_t i = 0; i < contact->surface_count && !status; ++i) {
+    surface_job job = {search, i, contact->surface[i], step->t + step->dt};
+    mpmi_surface_advance(&job.surface, step->dt);
+    if (has_touches(contact, i)) status = find_gaps_of(&job);
   }
   return status;
 }

@@ -99,5 +99,8 @@ void mpmi_active_set_harden(mpmi_balance *balance);
 double mpmi_active_set_error(const mpmi_balance *balance);
 /* Tells touches and reports what contact did (collective). MPM_CUT_DT: bodies slid too far for one step. */
 mpm_status mpmi_active_set_finish(mpmi_balance *balance);
+/* Measures the gaps of closed touches where particles have come to (collective). MPM_CUT_DT: bodies have come
+ * to overlap too far. */
+mpm_status mpmi_active_set_look_back(mpmi_balance *balance);
 
 #endif

@@ -39,71 +39,87 @@ static void tell(mpmi_balance *balance, const mpmi_constraint *of) {
   }
 }
 
-/* Normals and gaps are those of the start: where bodies slide far along curved surfaces they mislead. */
-static int32_t may_slide(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
-  const mpmi_contact_nodes *contact = &balance->nodes->contact;
+/* ---- what was too much --------------------------------------------------------------------------------- */
+/* Returns 1 for a touch that this part looks after, and that is closed and means something. */
+static int32_t counts(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
-  const mpmi_party *first = &contact->party[touch->party[0]];
+  if (!mpmi_owns_node(balance->layout->parts, balance->nodes->contact.party[touch->party[1]].slot)) return 0;
   int32_t light = mpmi_inner(of->force, touch->normal) <= pushes_at_all * most_force;
   for (int32_t i = 0; i < 2; ++i) {
     const double beside = of->row[i] < 0 ? 0.0 : mpmi_heaviest_beside(balance, of->row[i], -1);
     light |= beside > 0.0 && mpmi_whole_mass(balance, of->row[i]) <= weighs_at_all * beside;
   }
-  return light || !of->closed || mpmi_is_tie(balance, of) || touch->rule->normal == MPM_NORMAL_FIXED ||
-         (first->surface >= 0 && contact->surface[first->surface].shape == MPM_SHAPE_PLANE);
+  return !light && of->closed && !mpmi_is_tie(balance, of);
 }
 
-/* Returns the way that a touch has slid, of those that this part looks after and that may not slide. */
-static double slipped(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
+/* Returns the way that a touch has slid. Normals and gaps are those of the start: where bodies slide far along
+ * curved surfaces they mislead. */
+static double slipped(const mpmi_balance *balance, const mpmi_constraint *of) {
+  const mpmi_contact_nodes *contact = &balance->nodes->contact;
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
+  const mpmi_party *first = &contact->party[touch->party[0]];
   double move[3], along, across[3];
-  if (!mpmi_owns_node(balance->layout->parts, balance->nodes->contact.party[touch->party[1]].slot) ||
-      may_slide(balance, of, most_force))
+  if (touch->rule->normal == MPM_NORMAL_FIXED ||
+      (first->surface >= 0 && contact->surface[first->surface].shape == MPM_SHAPE_PLANE))
     return 0.0;
   mpmi_relative(balance, of, balance->newton->vector[MPMI_U], move);
   mpmi_split(move, touch->normal, &along, across);
   return sqrt(mpmi_inner(across, across));
 }
 
-/* Of several touches that slide too far the one at the node with the smallest number is told. */
-static mpm_status check_slips(const mpmi_balance *balance, double most_force) {
+/* Returns by how much bodies overlap after the step beyond what they did before. */
+static double overlapped(const mpmi_balance *balance, const mpmi_constraint *of) {
+  const mpmi_touch *touch = mpmi_touch_of(balance, of);
+  return mpmi_detects_by_velocity(touch->rule) ? 0.0 : fmin(0.0, touch->gap) - touch->gap_after;
+}
+
+typedef struct too_much {
+  double (*of)(const mpmi_balance *balance, const mpmi_constraint *of);
+  double share; /* of a cell */
+  const char *verb, *bound;
+} too_much;
+static const too_much slip = {slipped, 0.5, "slide", "half a cell"};
+static const too_much overlap = {overlapped, 0.25, "come to overlap", "a quarter of a cell"};
+
+/* Of several touches the one at the node with the smallest number is told. */
+static mpm_status check_here(const mpmi_balance *balance, const too_much *what, double most_force) {
   const mpmi_newton *newton = balance->newton;
-  const double most = 0.5 * balance->settings->grid->h_min;
+  const double most = what->share * balance->settings->grid->h_min;
   double told = 0.0;
   int64_t node = -1;
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     const mpmi_constraint *of = &newton->constraint[k];
-    const double slip = slipped(balance, of, most_force);
+    const double measured = counts(balance, of, most_force) ? what->of(balance, of) : 0.0;
     const int64_t slot = balance->nodes->contact.party[mpmi_touch_of(balance, of)->party[1]].slot,
-                  number = slip > most ? mpmi_blocks_number(&balance->layout->blocks, slot) : -1;
-    if (!(slip > most) || (node >= 0 && number >= node)) continue;
-    told = slip;
+                  number = measured > most ? mpmi_blocks_number(&balance->layout->blocks, slot) : -1;
+    if (!(measured > most) || (node >= 0 && number >= node)) continue;
+    told = measured;
     node = number;
   }
   if (node < 0) return MPM_OK;
   balance->step->failure.node = node;
   return mpmi_fail(
       balance->settings->context, MPM_CUT_DT,
-      "bodies in contact slide by %g at node %lld in the step from t = %g with dt = %g, more than "
-      "half a cell: %s",
-      told, (long long)node, balance->step->t, balance->step->dt, mpmi_smaller_steps(balance));
+      "bodies in contact %s by %g at node %lld in the step from t = %g with dt = %g, more than %s: %s",
+      what->verb, told, (long long)node, balance->step->t, balance->step->dt, what->bound,
+      mpmi_smaller_steps(balance));
 }
 
 /* Returns the same on all parts. */
-static mpm_status check_touches(const mpmi_balance *balance) {
+static mpm_status check_touches(const mpmi_balance *balance, const too_much *what) {
   const mpmi_newton *newton = balance->newton;
   double most = 0.0;
   for (int64_t k = 0; k < newton->constraint_count; ++k)
     most = fmax(most, mpmi_inner(newton->constraint[k].force,
                                  mpmi_touch_of(balance, &newton->constraint[k])->normal));
   mpm_status status = mpmi_largest_of_parts(balance, 1, &most);
-  if (!status) status = check_slips(balance, most);
+  if (!status) status = check_here(balance, what, most);
   return mpmi_vote(balance, status, 0);
 }
 
 mpm_status mpmi_active_set_finish(mpmi_balance *balance) {
   const mpmi_newton *newton = balance->newton;
-  const mpm_status status = newton->touches ? check_touches(balance) : MPM_OK;
+  const mpm_status status = newton->touches ? check_touches(balance, &slip) : MPM_OK;
   if (status) return status;
   for (int64_t k = 0; k < newton->constraint_count; ++k) tell(balance, &newton->constraint[k]);
   mpmi_bound bound = {.step = balance->step,
@@ -112,4 +128,17 @@ mpm_status mpmi_active_set_finish(mpmi_balance *balance) {
                       .dim = balance->settings->grid->dim};
   mpmi_body_contacts_sum(&bound);
   return MPM_OK;
+}
+
+mpm_status mpmi_active_set_look_back(mpmi_balance *balance) {
+  const mpmi_parts *parts = balance->layout->parts;
+  mpmi_bound bound = {.step = balance->step,
+                      .nodes = balance->nodes,
+                      .values = &balance->nodes->solved,
+                      .dim = balance->settings->grid->dim};
+  mpm_status status = MPM_OK;
+  if (parts && parts->invites)
+    status = mpmi_layout_exchange_guests(balance->layout, balance->settings->context, 1);
+  if (!status) status = mpmi_vote(balance, mpmi_body_contacts_find_after(&bound), 0);
+  return status ? status : check_touches(balance, &overlap);
 }

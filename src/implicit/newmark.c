@@ -332,7 +332,8 @@ mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   status = mpmi_record_reactions(balance);
   mpmi_lap(balance->step, MPMI_TIME_GRID, &clock);
   if (!status) status = mpmi_g2p_move(balance->step, balance->nodes, &balance->nodes->solved);
-  if (balance->settings->surfaces.count) status = mpmi_vote(balance, status, 0);
+  if (balance->settings->surfaces.count || balance->newton->touches) status = mpmi_vote(balance, status, 0);
+  if (!status && balance->newton->touches) status = mpmi_active_set_look_back(balance);
   if (!status) status = mpmi_surfaces_move(balance->step, &balance->nodes->solved, 0);
   if (!status) show_velocities(balance);
   mpmi_lap(balance->step, MPMI_TIME_G2P, &clock);

@@ -81,8 +81,9 @@ typedef struct mpmi_touch {
   double direction_sign;
   double friction, friction_static;
   double normal[3];
-  double gap;  /* infinite: no contact */
-  double area; /* length^(dim - 1) */
+  double gap;       /* infinite: no contact */
+  double gap_after; /* an implicit step: where particles are at its end, of closed touches */
+  double area;      /* length^(dim - 1) */
   double normal_impulse, tangential[3];
   double dissipation, friction_work;
   double work;                            /* of a surface on the material */

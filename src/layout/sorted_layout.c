@@ -305,6 +305,17 @@ static mpm_status find_ties(mpmi_layout *layout, const mpmi_settings *settings) 
   return status;
 }
 
+mpm_status mpmi_layout_exchange_guests(const mpmi_layout *layout, mpm_context *context, int32_t copy) {
+  const size_t bytes = mpmi_bytes(layout->member_count, sizeof(mpmi_host_set));
+  mpmi_host_set *sets = mpmi_alloc(context, bytes);
+  for (int32_t m = 0; m < layout->member_count && sets; ++m)
+    sets[m] = (mpmi_host_set){layout->member[m].set, &layout->member[m].now};
+  mpm_status status = mpmi_agree(context, sets ? MPM_OK : MPM_E_NOMEM);
+  if (!status) status = mpmi_guests_exchange(layout->parts, sets, layout->member_count, copy);
+  mpmi_free(context, sets, bytes);
+  return status;
+}
+
 int32_t mpmi_layout_is_moved(const mpmi_layout *layout) {
   int32_t moved = layout->parts ? layout->parts->is_stale : layout->blocks.count == 0;
   for (int32_t m = 0; m < layout->member_count; ++m)

@@ -101,6 +101,10 @@ static inline const mpm_particles *mpmi_resident_set(const mpmi_layout *layout, 
                                        : &layout->parts->guests[member - layout->member_count].set;
 }
 
+/* Sends the particles of given blocks to other parts, which have them as guests (collective); copy: of the
+ * fields that change in a step. */
+mpm_status mpmi_layout_exchange_guests(const mpmi_layout *layout, mpm_context *context, int32_t copy);
+
 /* Brings the layout up to date: sorts where particles have left their tiles, finds ties where walls have
  * changed. The old layout stays when that fails. */
 mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings);

@@ -125,5 +125,7 @@ double mpmi_rigid_compliance(const mpmi_rigid_surface *surface, const double *ar
 void mpmi_rigid_push(mpmi_rigid_surface *surface, const double *arm, const double *impulse);
 /* Writes the pose after the step, to which the surface's velocities lead. */
 void mpmi_rigid_move(const mpmi_rigid_surface *surface, double dt, mpmi_pose *next);
+/* Moves a surface to that pose. */
+void mpmi_surface_advance(mpmi_rigid_surface *surface, double dt);
 
 #endif

@@ -138,3 +138,11 @@ void mpmi_rigid_move(const mpmi_rigid_surface *s, double dt, mpmi_pose *next) {
     turn(next->orientation, s->spin, dt);
   }
 }
+
+void mpmi_surface_advance(mpmi_rigid_surface *s, double dt) {
+  mpmi_pose next;
+  if (!s->obstacle) return;
+  mpmi_rigid_move(s, dt, &next);
+  for (int32_t k = 0; k < 3; ++k) s->centre[k] = next.centre[k];
+  mpmi_pose_axes(next.orientation, s->axis);
+}

@@ -34,8 +34,13 @@ static int64_t guest_rows(const mpm_particles *set) {
 }
 
 /* ---- sending ------------------------------------------------------------------------------------------- */
+/* Returns the copy of a field that is sent. */
+static int32_t copy_of(int32_t field, int32_t copy) {
+  return field == MPMI_POSITION || field == MPMI_F ? copy : 0;
+}
+
 static mpm_status pack_guests(mpmi_parts *parts, int32_t to, guests_head head, const mpm_particles *set,
-                              int64_t begin) {
+                              int64_t begin, int32_t copy) {
   const size_t row = (size_t)head.slots * sizeof(uint64_t);
   char *at = mpmi_buffer_take(parts->context, &parts->out[to],
                               (int64_t)(sizeof head + (size_t)guest_rows(set) * row));
@@ -44,18 +49,19 @@ static mpm_status pack_guests(mpmi_parts *parts, int32_t to, guests_head head, c
   at += sizeof head;
   for (int32_t f = 0; f < MPMI_BUILTIN_FIELDS; ++f)
     for (int32_t c = 0; is_told_of(set, f) && c < set->field[f].components; ++c, at += row)
-      memcpy(at, (const uint64_t *)set->field[f].data[0] + c * set->ld + begin, row);
+      memcpy(at, (const uint64_t *)set->field[f].data[copy_of(f, copy)] + c * set->ld + begin, row);
   return MPM_OK;
 }
 
-static mpm_status pack_guests_for(mpmi_parts *parts, const mpmi_partner *to, const uint8_t *mark,
-                                  const mpmi_host_set *sets, int32_t count) {
+static mpm_status pack_guests_for(mpmi_parts *parts, const mpmi_partner *to, const mpmi_host_set *sets,
+                                  int32_t count, int32_t copy) {
   for (int64_t i = 0; i < to->sent; ++i) {
     const int64_t block = parts->sent[to->first_sent + i].block;
-    for (int32_t m = 0; m < count && mark[block]; ++m) {
+    for (int32_t m = 0; m < count && parts->given[block]; ++m) {
       const int64_t begin = sets[m].now->start[block], slots = sets[m].now->start[block + 1] - begin;
       if (!slots) continue;
-      const mpm_status status = pack_guests(parts, to->part, (guests_head){i, m, slots}, sets[m].set, begin);
+      const mpm_status status =
+          pack_guests(parts, to->part, (guests_head){i, m, slots}, sets[m].set, begin, copy);
       if (status) return status;
     }
   }
@@ -127,6 +133,7 @@ static mpm_status lay_out_guests(mpmi_parts *parts, mpmi_guest_set *of) {
   of->set.slots = 0;
   for (int32_t f = 0; f < MPMI_BUILTIN_FIELDS; ++f) {
     of->set.field[f].data[0] = is_told_of(&of->set, f) ? at : NULL;
+    of->set.field[f].data[1] = of->set.field[f].data[0]; /* at either time, what was sent last */
     if (is_told_of(&of->set, f) && at) at += of->set.field[f].components * ld;
   }
   return MPM_OK;
@@ -156,14 +163,13 @@ static mpm_status take_guests(mpmi_parts *parts, const mpmi_arrivals *in, const 
   return status;
 }
 
-mpm_status mpmi_guests_exchange(mpmi_parts *parts, const uint8_t *mark, const mpmi_host_set *sets,
-                                int32_t count) {
+mpm_status mpmi_guests_exchange(mpmi_parts *parts, const mpmi_host_set *sets, int32_t count, int32_t copy) {
   const double started = mpmi_seconds();
   mpmi_arrivals in;
   mpm_status status = MPM_OK;
   for (int32_t r = 0; r < mpmi_part_count(parts); ++r) parts->out[r].used = 0;
   for (int64_t i = 0; i < parts->partner_count && !status; ++i)
-    status = pack_guests_for(parts, &parts->partner[i], mark, sets, count);
+    status = pack_guests_for(parts, &parts->partner[i], sets, count, copy);
   for (int32_t r = 0; r < mpmi_part_count(parts); ++r) {
     if (status) parts->out[r].used = 0;
     parts->info.bytes_nodes += parts->out[r].used;

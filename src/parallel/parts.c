@@ -33,6 +33,7 @@ void mpmi_parts_destroy(mpmi_parts *parts) {
   MPMI_FREE_ARRAY(c, parts->out, count);
   MPMI_FREE_ARRAY(c, parts->body, parts->body_capacity);
   MPMI_FREE_ARRAY(c, parts->guest_of, parts->guest_capacity);
+  MPMI_FREE_ARRAY(c, parts->given, parts->given_capacity);
   MPMI_FREE_ARRAY(c, parts->message, count);
   MPMI_FREE_ARRAY(c, parts->most, count);
   MPMI_FREE_ARRAY(c, parts->partner, parts->partner_capacity);

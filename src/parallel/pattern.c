@@ -354,10 +354,12 @@ mpm_status mpmi_pattern_adopt(mpmi_parts *parts, const mpmi_blocks *blocks) {
       (status = MPMI_RESERVE_MORE(c, parts->is_inner, parts->is_inner_capacity, count + 1)) ||
       (status = MPMI_RESERVE_MORE(c, parts->near, parts->near_capacity, count + 1)) ||
       (status = MPMI_RESERVE_MORE(c, parts->guest_of, parts->guest_capacity, count + 1)) ||
+      (status = MPMI_RESERVE_MORE(c, parts->given, parts->given_capacity, count + 1)) ||
       (status = MPMI_RESERVE_MORE(c, parts->boundary, parts->boundary_capacity, parts->sent_count + 1)))
     return status;
   memset(parts->mark, 0, (size_t)(count + 1) * sizeof *parts->mark);
   memset(parts->guest_of, 0, (size_t)(count + 1) * sizeof *parts->guest_of);
+  memset(parts->given, 0, (size_t)(count + 1));
   memset(parts->is_boundary, 0, (size_t)(count + 1));
   memset(parts->is_inner, 0, (size_t)(count + 1));
   for (int64_t i = 0; i < parts->info.blocks; ++i) parts->is_inner[blocks->order[i]] = 1;

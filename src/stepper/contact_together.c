@@ -68,33 +68,22 @@ static int32_t mark_given(const mpm_stepper *s, const uint8_t *site, uint8_t *ma
   return any;
 }
 
-static mpm_status exchange_guests(mpm_stepper *s, const uint8_t *mark) {
-  mpmi_layout *layout = &s->layout;
-  const size_t bytes = mpmi_bytes(layout->member_count, sizeof(mpmi_host_set));
-  mpmi_host_set *sets = mpmi_alloc(s->context, bytes);
-  for (int32_t m = 0; m < layout->member_count && sets; ++m)
-    sets[m] = (mpmi_host_set){layout->member[m].set, &layout->member[m].now};
-  mpm_status status = mpmi_agree(s->context, sets ? MPM_OK : MPM_E_NOMEM);
-  if (!status) status = mpmi_guests_exchange(layout->parts, mark, sets, layout->member_count);
-  mpmi_free(s->context, sets, bytes);
-  return status;
-}
-
 mpm_status mpmi_together_touching(mpm_stepper *s) {
   if (!mpmi_is_shared(s) || !may_touch(s)) return MPM_OK;
   mpm_context *c = s->context;
   const int64_t blocks = s->layout.blocks.count;
-  const size_t bytes = mpmi_bytes(2 * blocks + 1, 1);
+  const size_t bytes = mpmi_bytes(blocks + 1, 1);
   uint8_t *mark = mpmi_alloc_zeroed(c, bytes);
   /* what is to be done by all where it is on one */
   int64_t word[] = {!mark, s->history.pairs.grown, 0, s->nodes.contact.anywhere};
   if (mark) {
     mark_sites(s, mark);
-    word[2] = mark_given(s, mark, mark + blocks);
+    word[2] = mark_given(s, mark, s->layout.parts->given);
   }
   mpmi_guests_clear(s->layout.parts);
   mpm_status status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 4, word);
   s->nodes.contact.anywhere = word[3] != 0;
+  s->layout.parts->invites = word[2] != 0;
   if (!status && word[0]) status = mpmi_agree(c, mark ? MPM_OK : MPM_E_NOMEM);
   if (!status && word[1]) status = unite_pairs(s);
   if (!status && word[1]) {
@@ -103,7 +92,7 @@ mpm_status mpmi_together_touching(mpm_stepper *s) {
     status = mpmi_agree(c, mpmi_tally_prepare(&s->work.tally, c, s->layout.member_count, pairs->count));
     pairs->grown = status != MPM_OK;
   }
-  if (!status && word[2]) status = exchange_guests(s, mark + blocks);
+  if (!status && word[2]) status = mpmi_layout_exchange_guests(&s->layout, c, 0);
   mpmi_free(c, mark, bytes);
   return status;
 }

@@ -119,6 +119,58 @@ START_TEST(implicit_slip) {
 }
 END_TEST
 
+/* Points below a slope that rises to the right, or those above it. */
+static mpm_status is_below(void *user, int32_t dim, int64_t n, int64_t ld, const double *x, uint8_t *inside) {
+  const int32_t *above = user;
+  (void)dim;
+  for (int64_t i = 0; i < n; ++i) inside[i] = (x[ld + i] > 0.5 * spacing + 0.7 * x[i]) == (*above != 0);
+  return MPM_OK;
+}
+
+/* What lies on a slope is pushed against it, along a normal that is said to be upright: nothing resists, and
+ * a step after which the bodies overlap by more than a quarter of a cell is cut, but not a smaller one, nor
+ * one in which both go as far together. */
+START_TEST(implicit_overlap) {
+  const int32_t per_cell[2] = {2, 2};
+  const double low[2] = {3.0 * spacing, spacing}, high[2] = {9.0 * spacing, 9.0 * spacing};
+  method how = methods[1];
+  how.scheme = MPM_NEWMARK;
+  world w;
+  world_desc desc = world_with(&how, 2, 12, spacing);
+  desc.sets = 1;
+  world_open(&w, &desc);
+  for (int32_t m = 0; m < 2; ++m) {
+    mpm_particles *set = m ? world_add_set(&w, NULL) : w.set[0];
+    ck_ok(&w, mpm_particles_fill(set, low, high, per_cell, is_below, &m, NULL, NULL));
+    ck_ok(&w, mpm_stepper_set_body(w.stepper, set, m));
+  }
+  const double v[2] = {box_speed, -0.05 * box_speed};
+  ck_ok(&w, mpm_particles_set_all(w.set[1], "velocity", MPM_F64, 2, v));
+  mpm_contact_desc rule = contact_desc(0.0);
+  rule.normal = MPM_NORMAL_FIXED;
+  rule.direction[1] = 1.0;
+  ck_ok(&w, mpm_stepper_set_contact(w.stepper, 0, 1, &rule));
+  const uint64_t was = world_hash(&w);
+  const double far = spacing / box_speed; /* the bodies overlap by 0.7 of the way */
+  ck_refused(&w, mpm_step(w.stepper, far, &w.info), MPM_CUT_DT, "more than a quarter of a cell");
+  ck_assert_int_ge(w.info.node, 0);
+  ck_assert_uint_eq(world_hash(&w), was);
+  ck_ok(&w, mpm_particles_set_all(w.set[0], "velocity", MPM_F64, 2, (double[]){box_speed, 0.0}));
+  world_step(&w, far);
+  ck_assert_double_gt(contact_of(&w, 0, 1).impulse[1], 0.0);
+  ck_ok(&w, mpm_particles_set_all(w.set[0], "velocity", MPM_F64, 2, (double[]){0.0, 0.0}));
+  ck_ok(&w, mpm_particles_set_all(w.set[1], "velocity", MPM_F64, 2, v));
+  world_step(&w, 0.2 * far);
+  ck_assert_double_gt(contact_of(&w, 0, 1).impulse[1], 0.0);
+  mpm_advance_desc advance;
+  ck_ok(&w, mpm_advance_desc_init(&advance, sizeof advance));
+  advance.t_end = world_info(&w).t + far;
+  advance.dt_first = far;
+  ck_ok(&w, mpm_advance(w.stepper, &advance, NULL));
+  world_close(&w);
+}
+END_TEST
+
 /* Two discs, which meet at a point, have no more energy while they touch than before: internal forces that
  * balance contact do no work at other nodes. */
 START_TEST(implicit_discs) {
@@ -305,6 +357,7 @@ void add_contact_steps(Suite *suite) {
   tcase_add_loop_test(steps, implicit_contact_is_quadratic, 0, 6);
   tcase_add_loop_test(steps, implicit_solvers, 1, 4);
   tcase_add_test(steps, implicit_slip);
+  tcase_add_test(steps, implicit_overlap);
   tcase_add_loop_test(steps, implicit_discs, 0, 2);
   tcase_add_loop_test(steps, masonry_at_rest, 0, 4);
   tcase_add_loop_test(steps, masonry_settles, 0, 2);

@@ -321,19 +321,21 @@ END_TEST
 /* ---- what may go wrong --------------------------------------------------------------------------------- */
 /* A block far from the middle of the grid goes onto a ball beside it, which few parts know. What is wrong is
  * so from the second step on; then the ball goes, and the steps go on. */
-enum { ADHERES, SLIDES, RETURNS, NO_NUMBER, FAULTS };
+enum { ADHERES, SLIDES, RETURNS, NO_NUMBER, GROWS, FAULTS };
 
 typedef struct fault {
   uint64_t is;
   int32_t there;
+  double grown, late; /* by how much, and after when */
 } fault;
 
 static mpm_status ball(void *user, const mpm_distance_batch *b) {
   const fault *f = user;
+  const double grown = f->there && f->is == GROWS && b->t > f->late ? f->grown : 0.0;
   if (f->there && f->is == RETURNS) return -7;
   for (int64_t i = 0; i < b->n; ++i) {
     const double x = b->position[i], y = b->position[b->ld + i], r = sqrt(x * x + y * y);
-    b->distance[i] = f->there && f->is == NO_NUMBER && x > 0.01 ? NOT_A_NUMBER : r - 0.12;
+    b->distance[i] = f->there && f->is == NO_NUMBER && x > 0.01 ? NOT_A_NUMBER : r - 0.12 - grown;
     b->normal[i] = r > 0.0 ? x / r : 0.0;
     b->normal[b->ld + i] = r > 0.0 ? y / r : 1.0;
   }
@@ -350,9 +352,9 @@ static mpm_status set_up_block(world *w, const scene *is) {
 
 static mpm_status fail_touching(world *w, const scene *is, outcome *found) {
   static const mpm_status wanted[] = {MPM_E_UNSUPPORTED, (mpm_status)MPM_CUT_DT, MPM_E_CALLBACK,
-                                      (mpm_status)MPM_NONFINITE};
+                                      (mpm_status)MPM_NONFINITE, (mpm_status)MPM_CUT_DT};
   const double dt = 0.1 * is->desc.grid.spacing[0], spin[] = {0.0, 0.0, 80.0};
-  fault f = {is->seed, 0};
+  fault f = {is->seed, 0, 0.4 * is->desc.grid.spacing[0], 1.5 * dt};
   mpm_obstacle *obstacle = NULL;
   mpm_obstacle_desc d =
       shape_of(f.is < RETURNS ? MPM_SHAPE_SPHERE : MPM_SHAPE_DISTANCE, MPM_MOTION_PRESCRIBED);

@@ -1603,7 +1603,7 @@ pub struct mpm_distance_batch {
     pub n: i64,
     /// distance from component c to c + 1, in elements; >= n
     pub ld: i64,
-    /// time at the start of the step
+    /// time at the start of the step; in implicit steps with contact once more at its end, for particles that have moved
     pub t: f64,
     /// [dim][ld]
     pub position: *const f64,
