@@ -52,8 +52,8 @@ static int32_t counts(const mpmi_balance *balance, const mpmi_constraint *of, do
   return !light && of->closed && !mpmi_is_tie(balance, of);
 }
 
-/* Returns the way that a touch has slid. Normals and gaps are those of the start: where bodies slide far along
- * curved surfaces they mislead. */
+/* Returns the way that a touch has slid. Normals and gaps are those of the start: where bodies slide far
+ * along curved surfaces they mislead. */
 static double slipped(const mpmi_balance *balance, const mpmi_constraint *of) {
   const mpmi_contact_nodes *contact = &balance->nodes->contact;
   const mpmi_touch *touch = mpmi_touch_of(balance, of);

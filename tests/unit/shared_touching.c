@@ -266,6 +266,40 @@ START_TEST(light_touches_slide) {
 }
 END_TEST
 
+/* Two layers, one on the other, that many parts share. They fly up together by a good part of a cell in each
+ * step, while the upper one is pressed on the lower one: who took the particles of others for where they were
+ * before would find that both overlap. */
+static mpm_status set_up_layers(world *w, const scene *is) {
+  static const double low[2][2] = {{0.1, 0.3}, {0.1, 0.45}}, high[2][2] = {{0.9, 0.45}, {0.9, 0.6}},
+                      v[2][2] = {{0.3, 1.0}, {0.3, 0.95}};
+  const int32_t per_cell[] = {2, 2};
+  mpm_status status = MPM_OK;
+  (void)is;
+  for (int32_t m = 0; m < 2 && !status; ++m) {
+    status = mpm_particles_fill_box(w->set[m], low[m], high[m], per_cell, NULL, NULL);
+    if (!status) status = mpm_particles_set_all(w->set[m], "velocity", MPM_F64, 2, v[m]);
+    if (!status) status = mpm_stepper_set_body(w->stepper, w->set[m], m);
+  }
+  return status;
+}
+
+static mpm_status fly_together(world *w, const scene *is, outcome *found) {
+  mpm_status status = MPM_OK;
+  for (int32_t step = 0; step < 3 && !status; ++step) {
+    status = mpm_step(w->stepper, 0.8 * is->desc.grid.spacing[1], &w->info);
+    found->contact[step].struct_size = sizeof found->contact[step];
+    if (!status) status = mpm_stepper_contact_info(w->stepper, 0, 1, &found->contact[step]);
+  }
+  return !status && !found->contact[0].closed ? MPM_E_INTERNAL : status;
+}
+
+START_TEST(layers_fly) {
+  scene is = contact_scene(1 + _i, set_up_layers, fly_together);
+  is.desc.sets = 2;
+  check_made(&is, "layers", 2 + _i);
+}
+END_TEST
+
 /* ---- a bar that is pushed at one end ------------------------------------------------------------------- */
 /* So long that most parts are far from all touches. */
 static mpm_status set_up_bar(world *w, const scene *is) {
@@ -435,6 +469,7 @@ void add_shared_touching(Suite *suite) {
   tcase_add_loop_test(all, bodies_meet_where_parts_do, 0, 3);
   tcase_add_loop_test(all, body_is_held, 0, 2);
   tcase_add_loop_test(all, bar_is_pushed, 0, 2);
+  tcase_add_loop_test(all, layers_fly, 0, 2);
   suite_add_tcase(suite, all);
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 240);
