@@ -347,12 +347,6 @@ static void visit_task(void *data, int64_t k) {
   }
 }
 
-void mpmi_contact_way(const mpmi_contact_search *search, const mpmi_party *party, double *way) {
-  const mpm_grid *grid = search->step->layout->blocks.grid;
-  for (int32_t k = 0; k < grid->dim; ++k)
-    way[k] = search->step->dt * mpmi_velocity(search->values, party->slot)[k] * grid->inverse_spacing[k];
-}
-
 double mpmi_party_radius(const mpmi_layout *layout, const mpmi_contact_nodes *contact,
                          const mpmi_party *party) {
   double sum = 0.0, weight = 0.0;

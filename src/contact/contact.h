@@ -20,7 +20,7 @@ typedef struct mpmi_contact_search {
   mpmi_nodes *nodes;
   const mpmi_nodal *values; /* of the projection, with ties folded */
   mpmi_contact_nodes *contact;
-  int32_t copy; /* of the particles' fields: 0 at the start of the step, 1 where they have moved */
+  int32_t copy; /* of the particles' fields: 0 at the start of the step, 1 where nodes and they have moved */
 } mpmi_contact_search;
 
 /* Returns 1 for a node, not one that follows another, at which its body may touch another one or a surface;
@@ -35,8 +35,9 @@ mpm_status mpmi_gaps_find(mpmi_contact_search *search);
 
 /* Does the same where a surface takes part; this does not depend on velocities. */
 mpm_status mpmi_surface_gaps_find(mpmi_contact_search *search);
-/* Finds the gaps of closed touches once more, along the normals that they have then, by the particles of the
- * clouds and the surfaces where they are at the end of the step: those of bodies, and those with surfaces. */
+/* Finds the gaps of those touches once more that are asked for it, by the particles of the clouds and the
+ * surfaces where they are at the end of the step: those of bodies, along the normals that they have then, and
+ * those with surfaces. */
 mpm_status mpmi_gaps_find_after(mpmi_contact_search *search);
 mpm_status mpmi_surface_gaps_find_after(mpmi_contact_search *search);
 /* Returns 1 when the first party of a touch is a surface. */
@@ -61,6 +62,11 @@ typedef struct mpmi_cloud_frame {
 
 mpmi_cloud_frame mpmi_cloud_frame_of(const mpmi_blocks *b, const mpmi_cloud *cloud);
 
+/* Lets the node go along with its body, as the master of the cloud's party sees it. */
+static inline void mpmi_cloud_frame_move(mpmi_cloud_frame *of, const double *way) {
+  for (int32_t k = 0; k < of->dim; ++k) of->node[k] += of->scale[k] < 0.0 ? -way[k] : way[k];
+}
+
 /* Finds the place of a particle from the node of a cloud, in cells, as the master of the cloud's party sees
  * it: along one axis, or from the positions of its set along all of them. */
 static inline double mpmi_cloud_coordinate(const mpmi_cloud_frame *of, int32_t k, double position) {
@@ -72,8 +78,6 @@ static inline void mpmi_cloud_place(const mpmi_cloud_frame *of, const double *po
                                     int64_t slot, double *x) {
   for (int32_t k = 0; k < of->dim; ++k) x[k] = mpmi_cloud_coordinate(of, k, position[k * ld + slot]);
 }
-/* Finds how far a body's node moves in an implicit step, in cells. */
-void mpmi_contact_way(const mpmi_contact_search *search, const mpmi_party *party, double *way);
 /* Returns the mean radius of a party's rings at the node, by which areas are those of one radian; else 1. */
 double mpmi_party_radius(const mpmi_layout *layout, const mpmi_contact_nodes *contact,
                          const mpmi_party *party);

@@ -17,6 +17,7 @@ typedef struct around {
   mpmi_separation points;
   double *x[3], *weight, *half_edge; /* the last: half the edge of the cube that a particle has been */
   double *far;                       /* towards the other party, along the normal that is looked at */
+  const double *way;                 /* of the node, by which particles have moved along, or NULL */
   double offset;
 } around;
 enum { ROWS = 6, IN_TURN = 4 };
@@ -67,7 +68,8 @@ static void collect(around *of, int32_t which) {
   edges_in_turn edges = {.volume = -1.0};
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
     const mpmi_cloud *source = &contact->cloud[contact->cloud[i].source];
-    const mpmi_cloud_frame frame = mpmi_cloud_frame_of(&layout->blocks, &contact->cloud[i]);
+    mpmi_cloud_frame frame = mpmi_cloud_frame_of(&layout->blocks, &contact->cloud[i]);
+    if (of->way) mpmi_cloud_frame_move(&frame, of->way);
     for (int64_t e = source->first, some, end = e + source->count; e < end; at += some, e += some) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
       some = collect_set(of, &frame, mpmi_resident_set(layout, entry->member), entry, end - e, at, &edges);
@@ -248,7 +250,8 @@ static around around_touch(const mpmi_contact_search *search, const mpmi_touch *
   const mpmi_contact_nodes *contact = search->contact;
   around of = {.search = search,
                .party = {&contact->party[touch->party[0]], &contact->party[touch->party[1]]},
-               .offset = touch->rule->offset};
+               .offset = touch->rule->offset,
+               .way = search->copy ? touch->way : NULL};
   int64_t first = 0;
   for (int32_t c = 0; c < 2; ++c) {
     of.points.count[c] = party_particles(contact, of.party[c]);
@@ -294,13 +297,8 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, dou
 static void find_gap_after(const mpmi_contact_search *search, mpmi_touch *touch, double *memory) {
   const mpm_grid *grid = search->step->layout->blocks.grid;
   const int32_t rule = touch->rule->normal;
-  double normal[3] = {touch->normal[0], touch->normal[1], touch->normal[2]}, moved[3];
+  double normal[3] = {touch->normal[0], touch->normal[1], touch->normal[2]};
   around of = around_touch(search, touch, memory);
-  mpmi_contact_way(search, of.party[1], moved);
-  for (int32_t k = 0; k < grid->dim; ++k)
-    for (int32_t which = 0; which < 2; ++which)
-      for (int64_t p = of.points.first[which]; p < of.points.first[which] + of.points.count[which]; ++p)
-        of.x[k][p] -= moved[k];
   if ((rule == MPM_NORMAL_LOGISTIC || rule == MPM_NORMAL_DISCRIMINANT) &&
       search->step->settings->kernels->discriminate[grid->dim](&of.points)) {
     normal_of_plane(grid, of.points.plane, normal);
@@ -335,8 +333,7 @@ static void find_task_after(void *data, int64_t k) {
   mpmi_contact_nodes *contact = search->contact;
   const int32_t tasks = search->step->settings->tasks;
   for (int64_t i = 0; i < contact->touch_count; ++i)
-    if (i / IN_TURN % tasks == k && contact->touch[i].closed &&
-        contact->touch[i].rule->kind == MPM_CONTACT_UNILATERAL &&
+    if (i / IN_TURN % tasks == k && contact->touch[i].asked &&
         !mpmi_is_of_surface(contact, &contact->touch[i]))
       find_gap_after(search, &contact->touch[i], contact->work + k * contact->work_each);
 }

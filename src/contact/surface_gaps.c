@@ -4,6 +4,7 @@
 #include "contact/contact.h"
 #include "layout/tasks.h"
 #include "layout/visit.h"
+#include "particles/values.h"
 
 #include <math.h>
 
@@ -37,7 +38,7 @@ static void clear_chunk(const surface_job *job, const mpmi_residents *in, int64_
   const mpmi_contact_nodes *contact = job->search->contact;
   const mpm_particles *set = in->set;
   const mpm_grid *grid = set->grid;
-  const int32_t copy = job->search->copy;
+  const int32_t copy = job->search->copy, leaves = copy && !mpmi_is_total_lagrangian(grid);
   const mpmi_widths widths = mpmi_widths_of(set, copy);
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   double *clearance = contact->clearance + contact->clearance_first[in->member];
@@ -45,7 +46,8 @@ static void clear_chunk(const surface_job *job, const mpmi_residents *in, int64_
   mpmi_distance_fault fault;
   int64_t slot[MPMI_DISTANCE_POINTS];
   for (int64_t s = begin; s < end; ++s) {
-    if (id[s] < 0) continue;
+    clearance[s] = (double)INFINITY;
+    if (id[s] < 0 || (leaves && mpmi_is_beyond(set, copy, s))) continue;
     for (int32_t k = 0; k < grid->dim; ++k)
       points.position[k][points.n] = mpmi_f64(set, MPMI_POSITION, copy)[k * set->ld + s];
     slot[points.n++] = s;
@@ -117,23 +119,23 @@ static int32_t is_beside(const mpm_grid *grid, const double *x, const double *n)
   return grid->dim == 1 || squared <= MPMI_CONTACT_REACH * MPMI_CONTACT_REACH;
 }
 
-/* moved: the way of the node, in cells, by which particles have moved along, or NULL. */
+/* way: of the node, by which particles have moved along, or NULL. */
 static double gap_of(const mpmi_contact_search *search, const mpmi_party *party, const double *n,
-                     const double *moved) {
+                     const double *way) {
   const mpmi_layout *layout = search->step->layout;
   const mpmi_contact_nodes *contact = search->contact;
   double gap = (double)INFINITY;
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
     const mpmi_cloud *cloud = &contact->cloud[i], *source = &contact->cloud[cloud->source];
-    const mpmi_cloud_frame frame = mpmi_cloud_frame_of(&layout->blocks, cloud);
+    mpmi_cloud_frame frame = mpmi_cloud_frame_of(&layout->blocks, cloud);
     double x[3];
+    if (way) mpmi_cloud_frame_move(&frame, way);
     for (int64_t e = source->first; e < source->first + source->count; ++e) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
       const double clearance = contact->clearance[contact->clearance_first[entry->member] + entry->slot];
       if (!(clearance < gap)) continue;
       const mpm_particles *set = mpmi_resident_set(layout, entry->member);
       mpmi_cloud_place(&frame, mpmi_places(set, search->copy), set->ld, entry->slot, x);
-      for (int32_t k = 0; k < frame.dim && moved; ++k) x[k] -= moved[k];
       double along[3] = {n[0], n[1], n[2]};
       if (mpmi_is_total_lagrangian(set->grid))
         pull_direction(set, search->copy, entry->slot, cloud->mirrored, n, along);
@@ -167,14 +169,12 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch) {
       touch->rule->kind == MPM_CONTACT_UNILATERAL && !(touch->gap <= search->step->settings->grid->h_min);
 }
 
-/* Finds the gap of a closed touch once more; places on a total Lagrangian grid do not move. */
+/* Finds the gap of a touch once more, along the line of the start; places on a total Lagrangian grid do not
+ * move. */
 static void find_gap_after(const mpmi_contact_search *search, mpmi_touch *touch) {
   const mpmi_party *party = &search->contact->party[touch->party[1]];
-  double moved[3];
-  if (!touch->closed || touch->rule->kind != MPM_CONTACT_UNILATERAL) return;
-  mpmi_contact_way(search, party, moved);
-  touch->gap_after = gap_of(search, party, touch->normal,
-                            mpmi_is_total_lagrangian(search->step->layout->blocks.grid) ? NULL : moved);
+  const int32_t stays = mpmi_is_total_lagrangian(search->step->layout->blocks.grid);
+  if (touch->asked) touch->gap_after = gap_of(search, party, touch->normal, stays ? NULL : touch->way);
 }
 
 static void gap_task(void *data, int64_t k) {
@@ -237,8 +237,16 @@ static mpm_status find_gaps_of(surface_job *job) {
   return status;
 }
 
-static int32_t has_touches(const mpmi_contact_nodes *contact, int32_t i) {
+static int32_t has_touches(const mpmi_contact_nodes *contact, int64_t i) {
   return contact->by_surface[i] < contact->by_surface[i + 1];
+}
+
+static int32_t is_asked(const mpmi_contact_nodes *contact, int64_t i) {
+  const int64_t *list = contact->by_surface + contact->surface_count + 1;
+  int32_t asked = 0;
+  for (int64_t k = contact->by_surface[i]; k < contact->by_surface[i + 1]; ++k)
+    asked |= contact->touch[list[k]].asked;
+  return asked;
 }
 
 mpm_status mpmi_surface_gaps_find(mpmi_contact_search *search) {
@@ -261,7 +269,7 @@ mpm_status mpmi_surface_gaps_find_after(mpmi_contact_search *search) {
   for (int32_t i = 0; i < contact->surface_count && !status; ++i) {
     surface_job job = {search, i, contact->surface[i], step->t + step->dt};
     mpmi_surface_advance(&job.surface, step->dt);
-    if (has_touches(contact, i)) status = find_gaps_of(&job);
+    if (is_asked(contact, i)) status = find_gaps_of(&job);
   }
   return status;
 }

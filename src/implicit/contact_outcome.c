@@ -52,47 +52,54 @@ static int32_t counts(const mpmi_balance *balance, const mpmi_constraint *of, do
   return !light && of->closed && !mpmi_is_tie(balance, of);
 }
 
-/* Returns the way that a touch has slid. Normals and gaps are those of the start: where bodies slide far
- * along curved surfaces they mislead. */
+/* Returns the way of a touch along its plane, in cells. */
+static double slip_of(const mpmi_balance *balance, const mpmi_constraint *of) {
+  double move[3], along, across[3];
+  mpmi_relative(balance, of, balance->newton->vector[MPMI_U], move);
+  mpmi_split(move, mpmi_touch_of(balance, of)->normal, &along, across);
+  return sqrt(mpmi_inner(across, across)) / balance->settings->grid->h_min;
+}
+
+/* Returns how far a touch has slid where that misleads: normals and gaps are those of the start, and on
+ * curved surfaces others where it has come to. */
 static double slipped(const mpmi_balance *balance, const mpmi_constraint *of) {
   const mpmi_contact_nodes *contact = &balance->nodes->contact;
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
   const mpmi_party *first = &contact->party[touch->party[0]];
-  double move[3], along, across[3];
-  if (touch->rule->normal == MPM_NORMAL_FIXED ||
-      (first->surface >= 0 && contact->surface[first->surface].shape == MPM_SHAPE_PLANE))
-    return 0.0;
-  mpmi_relative(balance, of, balance->newton->vector[MPMI_U], move);
-  mpmi_split(move, touch->normal, &along, across);
-  return sqrt(mpmi_inner(across, across));
+  const int32_t is_plane = first->surface >= 0 && contact->surface[first->surface].shape == MPM_SHAPE_PLANE;
+  return touch->rule->normal == MPM_NORMAL_FIXED || is_plane ? 0.0 : slip_of(balance, of);
 }
 
-/* Returns by how much bodies overlap after the step beyond what they did before. */
+/* Returns by how much bodies overlap after the step beyond what they did before, in cells along the
+ * normal. */
 static double overlapped(const mpmi_balance *balance, const mpmi_constraint *of) {
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
-  return mpmi_detects_by_velocity(touch->rule) ? 0.0 : fmin(0.0, touch->gap) - touch->gap_after;
+  const mpm_grid *grid = balance->settings->grid;
+  double squared = 0.0;
+  for (int32_t k = 0; k < grid->dim; ++k)
+    squared += touch->normal[k] * touch->normal[k] * grid->inverse_spacing[k] * grid->inverse_spacing[k];
+  return touch->asked ? (fmin(0.0, touch->gap) - touch->gap_after) * sqrt(squared) : 0.0;
 }
 
 typedef struct too_much {
-  double (*of)(const mpmi_balance *balance, const mpmi_constraint *of);
-  double share; /* of a cell */
+  double (*of)(const mpmi_balance *balance, const mpmi_constraint *of); /* in cells */
+  double most;
   const char *verb, *bound;
 } too_much;
 static const too_much slip = {slipped, 0.5, "slide", "half a cell"};
-static const too_much overlap = {overlapped, 0.25, "come to overlap", "a quarter of a cell"};
+static const too_much overlap = {overlapped, 0.25, "come to overlap", "a quarter of one"};
 
 /* Of several touches the one at the node with the smallest number is told. */
 static mpm_status check_here(const mpmi_balance *balance, const too_much *what, double most_force) {
   const mpmi_newton *newton = balance->newton;
-  const double most = what->share * balance->settings->grid->h_min;
   double told = 0.0;
   int64_t node = -1;
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     const mpmi_constraint *of = &newton->constraint[k];
     const double measured = counts(balance, of, most_force) ? what->of(balance, of) : 0.0;
     const int64_t slot = balance->nodes->contact.party[mpmi_touch_of(balance, of)->party[1]].slot,
-                  number = measured > most ? mpmi_blocks_number(&balance->layout->blocks, slot) : -1;
-    if (!(measured > most) || (node >= 0 && number >= node)) continue;
+                  number = measured > what->most ? mpmi_blocks_number(&balance->layout->blocks, slot) : -1;
+    if (!(measured > what->most) || (node >= 0 && number >= node)) continue;
     told = measured;
     node = number;
   }
@@ -100,20 +107,26 @@ static mpm_status check_here(const mpmi_balance *balance, const too_much *what, 
   balance->step->failure.node = node;
   return mpmi_fail(
       balance->settings->context, MPM_CUT_DT,
-      "bodies in contact %s by %g at node %lld in the step from t = %g with dt = %g, more than %s: %s",
+      "bodies in contact %s by %g cells at node %lld in the step from t = %g with dt = %g, more than %s: %s",
       what->verb, told, (long long)node, balance->step->t, balance->step->dt, what->bound,
       mpmi_smaller_steps(balance));
 }
 
+/* Finds the largest force of a touch (collective). */
+static mpm_status find_most_force(const mpmi_balance *balance, double *most) {
+  const mpmi_newton *newton = balance->newton;
+  *most = 0.0;
+  for (int64_t k = 0; k < newton->constraint_count; ++k)
+    *most = fmax(*most, mpmi_inner(newton->constraint[k].force,
+                                   mpmi_touch_of(balance, &newton->constraint[k])->normal));
+  return mpmi_largest_of_parts(balance, 1, most);
+}
+
 /* Returns the same on all parts. */
 static mpm_status check_touches(const mpmi_balance *balance, const too_much *what) {
-  const mpmi_newton *newton = balance->newton;
-  double most = 0.0;
-  for (int64_t k = 0; k < newton->constraint_count; ++k)
-    most = fmax(most, mpmi_inner(newton->constraint[k].force,
-                                 mpmi_touch_of(balance, &newton->constraint[k])->normal));
-  mpm_status status = mpmi_largest_of_parts(balance, 1, &most);
-  if (!status) status = check_here(balance, what, most);
+  double most_force;
+  mpm_status status = find_most_force(balance, &most_force);
+  if (!status) status = check_here(balance, what, most_force);
   return mpmi_vote(balance, status, 0);
 }
 
@@ -130,13 +143,57 @@ mpm_status mpmi_active_set_finish(mpmi_balance *balance) {
   return MPM_OK;
 }
 
+/* ---- the gaps after the step --------------------------------------------------------------------------- */
+/* Bodies that have slid by less than this, in cells, are not asked for their gap: what comes near the line on
+ * which it is measured may be rough, and steps of no length would be too long. */
+static const double slid_at_all = 0.125;
+
+static int32_t is_asked(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
+  const mpmi_touch *touch = mpmi_touch_of(balance, of);
+  return counts(balance, of, most_force) && !mpmi_detects_by_velocity(touch->rule) &&
+         (mpmi_is_of_surface(&balance->nodes->contact, touch) || slip_of(balance, of) >= slid_at_all);
+}
+
+/* Finds how the second party has moved. */
+static void find_way(const mpmi_balance *balance, const mpmi_constraint *of, double *way) {
+  const int64_t slot = balance->nodes->contact.party[mpmi_touch_of(balance, of)->party[1]].slot;
+  const int32_t dim = balance->settings->grid->dim;
+  const double *u = balance->newton->vector[MPMI_U];
+  for (int32_t c = 0; c < dim; ++c) {
+    way[c] = 0.0;
+    if (of->row[1] >= 0)
+      way[c] = u[(int64_t)of->row[1] * dim + c];
+    else if (mpmi_held_by(balance->nodes, slot, c))
+      way[c] = balance->step->dt * balance->nodes->held_value[slot][c];
+  }
+}
+
+/* Marks the touches that are asked for their gap; tells whether there are any (collective). */
+static mpm_status ask(const mpmi_balance *balance, double *any) {
+  const mpmi_newton *newton = balance->newton;
+  mpmi_contact_nodes *contact = &balance->nodes->contact;
+  double most_force;
+  const mpm_status status = find_most_force(balance, &most_force);
+  *any = 0.0;
+  for (int64_t t = 0; t < contact->touch_count; ++t) contact->touch[t].asked = 0;
+  for (int64_t k = 0; k < newton->constraint_count && !status; ++k) {
+    mpmi_touch *touch = &contact->touch[newton->constraint[k].touch];
+    touch->asked = is_asked(balance, &newton->constraint[k], most_force);
+    if (touch->asked) find_way(balance, &newton->constraint[k], touch->way);
+    *any = fmax(*any, touch->asked);
+  }
+  return status ? status : mpmi_largest_of_parts(balance, 1, any);
+}
+
 mpm_status mpmi_active_set_look_back(mpmi_balance *balance) {
   const mpmi_parts *parts = balance->layout->parts;
   mpmi_bound bound = {.step = balance->step,
                       .nodes = balance->nodes,
                       .values = &balance->nodes->solved,
                       .dim = balance->settings->grid->dim};
-  mpm_status status = MPM_OK;
+  double any;
+  mpm_status status = ask(balance, &any);
+  if (status || !(any > 0.0)) return status;
   if (parts && parts->invites)
     status = mpmi_layout_exchange_guests(balance->layout, balance->settings->context, 1);
   if (!status) status = mpmi_vote(balance, mpmi_body_contacts_find_after(&bound), 0);

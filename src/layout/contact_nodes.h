@@ -82,11 +82,13 @@ typedef struct mpmi_touch {
   double friction, friction_static;
   double normal[3];
   double gap;       /* infinite: no contact */
-  double gap_after; /* an implicit step: where particles are at its end, of closed touches */
+  double gap_after; /* an implicit step: where particles are at its end, if it is asked for */
   double area;      /* length^(dim - 1) */
   double normal_impulse, tangential[3];
   double dissipation, friction_work;
   double work;                            /* of a surface on the material */
+  double way[3];                          /* an implicit step: of the second party */
+  int32_t asked;                          /* for its gap after the step */
   int32_t open, closed, stuck, ambiguous; /* open: it cannot close in this step */
 } mpmi_touch;
 

@@ -48,18 +48,24 @@ static double tolerance_of(const sample *s) {
   return fmax(1e-12, 1e-4 * s->rounding / (s->share * s->share));
 }
 
-static void ck_agree(int32_t dim, const sample *a, const sample *b) {
+static void ck_agree(const body_desc *of, const sample *a, const sample *b) {
+  const int32_t dim = of->dim;
   const double tolerance = tolerance_of(a);
+  double apart = 0.0;
   for (int32_t m = 0; m < 2; ++m) {
     ck_assert_int_eq(a->n[m], b->n[m]);
     for (int32_t f = 0; f < 3; ++f) {
       const int64_t n = a->n[m] * components_of(dim, f);
       const double scale = largest(n, a->value[m][f]);
       ck_assert_double_gt(scale, 0.0);
-      for (int64_t i = 0; i < n; ++i)
+      for (int64_t i = 0; i < n; ++i) {
         ck_within(sampled[f].name, b->value[m][f][i], a->value[m][f][i], tolerance * scale);
+        apart = fmax(apart, fabs(b->value[m][f][i] - a->value[m][f][i]) / scale);
+      }
     }
   }
+  show("%d-D, %s: %.2g apart, %.2g of rounding over the square of the least share, %.2g\n", (int)dim,
+       of->method.name, apart, apart * a->share * a->share / a->rounding, a->share);
 }
 
 static void remove_some(world *r) {
@@ -229,7 +235,7 @@ START_TEST(same_bits) {
     o.isa = isa;
     one_isa(o, !tried, _i, tried ? &other : &first);
     if (!tried++) continue;
-    ck_agree(o.dim, &first, &other);
+    ck_agree(&o, &first, &other);
     drop_sample(&other);
   }
   ck_assert_int_ge(tried, 1);
