@@ -1187,8 +1187,8 @@ namespace Mpm {
     public long n;
     /// <summary>distance from component c to c + 1, in elements; &gt;= n.</summary>
     public long ld;
-    /// <summary>time at the start of the step; in implicit steps with contact once more at its end, for particles
-    /// that have moved.</summary>
+    /// <summary>time at the start of the step; in implicit steps with contact a second time that at its end, for
+    /// particles and the pose of that time.</summary>
     public double t;
     /// <summary>[dim][ld].</summary>
     public double* position;

@@ -933,8 +933,8 @@ module mpm
     integer(c_int64_t) :: n
     !> distance from component c to c + 1, in elements; >= n.
     integer(c_int64_t) :: ld
-    !> time at the start of the step; in implicit steps with contact once more at its end, for particles that have
-    !! moved.
+    !> time at the start of the step; in implicit steps with contact a second time that at its end, for particles and
+    !! the pose of that time.
     real(c_double) :: t
     !> [dim][ld].
     type(c_ptr) :: position

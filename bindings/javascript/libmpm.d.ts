@@ -1043,8 +1043,8 @@ export interface DistanceBatch {
   /** distance from component c to c + 1, in elements; >= n */
   readonly ld: number;
   /**
-   * time at the start of the step; in implicit steps with contact once more at its end, for particles that
-   * have moved
+   * time at the start of the step; in implicit steps with contact a second time that at its end, for
+   * particles and the pose of that time
    */
   readonly t: number;
   /** [dim][ld] */

@@ -49,8 +49,8 @@ typedef struct mpm_distance_batch {
   int32_t dim;            /**< dimension of the grid */
   int64_t n;              /**< number of points */
   int64_t ld;             /**< distance from component c to c + 1, in elements; >= n */
-  double t;               /**< time at the start of the step; in implicit steps with contact once more at its
-                               end, for particles that have moved */
+  double t;               /**< time at the start of the step; in implicit steps with contact a second time
+                               that at its end, for particles and the pose of that time */
   const double *position; /**< [dim][ld] */
   double *distance;       /**< [ld] to be set: signed distance, > 0 outside. It must be right up to two
                                spacings, and the offset of the obstacle's rule, off the surface;

@@ -403,7 +403,7 @@ static void sweep_task(void *data, int64_t k) {
 
 mpm_status mpmi_body_contacts_place(mpmi_bound *bound) {
   mpmi_contact_nodes *contact = &bound->nodes->contact;
-  mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact, 0};
+  mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact, 0, 0};
   if (contact->measured || !contact->site_count) return MPM_OK;
   const mpm_status status = mpmi_sites_measure(&search);
   contact->measured = !status;
@@ -412,7 +412,7 @@ mpm_status mpmi_body_contacts_place(mpmi_bound *bound) {
 
 mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   mpmi_contact_nodes *contact = &bound->nodes->contact;
-  mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact, 0};
+  mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact, 0, 0};
   mpm_status status = MPM_OK;
   mpmi_rigid_surfaces_predict(contact, bound->step->settings, bound->step->velocity_dt);
   if (!contact->site_count) return MPM_OK;
@@ -429,8 +429,10 @@ mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   return mpmi_ask_friction(bound);
 }
 
-mpm_status mpmi_body_contacts_find_after(mpmi_bound *bound) {
-  mpmi_contact_search search = {bound->step, bound->nodes, bound->values, &bound->nodes->contact, 1};
+mpm_status mpmi_body_contacts_find_after(mpmi_bound *bound, double moved) {
+  enum { FARTHEST = 1 << 20 };
+  mpmi_contact_search search = {
+      bound->step, bound->nodes, bound->values, &bound->nodes->contact, 1, (int64_t)fmin(moved, FARTHEST)};
   const mpm_status status = mpmi_surface_gaps_find_after(&search);
   return status ? status : mpmi_gaps_find_after(&search);
 }

@@ -125,8 +125,9 @@ static inline int32_t mpmi_bodies_touch(const mpmi_bound *bound) {
 mpm_status mpmi_body_contacts_place(mpmi_bound *bound);
 /* Finds where bodies may touch, and asks the host for coefficients of friction. */
 mpm_status mpmi_body_contacts_find(mpmi_bound *bound);
-/* Finds the gaps of closed touches of an implicit step where particles have come to. */
-mpm_status mpmi_body_contacts_find_after(mpmi_bound *bound);
+/* Finds the gaps of the touches that are asked for them where particles have come to, so many cells away at
+ * most. */
+mpm_status mpmi_body_contacts_find_after(mpmi_bound *bound, double moved);
 /* Lets bodies act on each other, or with keeps, in a projection without forces, keeps their contacts as they
  * were found. Rounds after the first go on from there. *most becomes the largest velocity that changed. */
 mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t first_round, double *most);

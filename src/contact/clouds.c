@@ -198,7 +198,7 @@ static void find_stencil(const cloud_particles *of, const mpm_grid *grid, int32_
 static void pull_back(const cloud_particles *of, const mpm_grid *grid, int64_t p, double *gradient) {
   const int32_t dim = grid->dim, first = 3 - dim;
   double inverse[3][3];
-  mpmi_inverse_at(of->set, 0, of->slot + p, inverse);
+  mpmi_inverse_at(of->set, of->slot + p, inverse);
   const double G[3] = {gradient[0], gradient[1], gradient[2]};
   for (int32_t j = 0; j < dim; ++j) {
     gradient[first + j] = 0.0;

@@ -20,7 +20,8 @@ typedef struct mpmi_contact_search {
   mpmi_nodes *nodes;
   const mpmi_nodal *values; /* of the projection, with ties folded */
   mpmi_contact_nodes *contact;
-  int32_t copy; /* of the particles' fields: 0 at the start of the step, 1 where nodes and they have moved */
+  int32_t copy;  /* of the particles' fields: 0 at the start of the step, 1 where nodes and they have moved */
+  int64_t moved; /* so many cells at most */
 } mpmi_contact_search;
 
 /* Returns 1 for a node, not one that follows another, at which its body may touch another one or a surface;

@@ -13,10 +13,10 @@ double mpmi_half_edge(int32_t dim, double volume) {
   }
 }
 
-void mpmi_inverse_at(const mpm_particles *set, int32_t copy, int64_t slot, double inverse[3][3]) {
+void mpmi_inverse_at(const mpm_particles *set, int64_t slot, double inverse[3][3]) {
   const int32_t dim = set->grid->dim;
   double F[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
   for (int32_t i = 0; i < dim; ++i)
-    for (int32_t j = 0; j < dim; ++j) F[i][j] = mpmi_f64(set, MPMI_F, copy)[(i * dim + j) * set->ld + slot];
+    for (int32_t j = 0; j < dim; ++j) F[i][j] = mpmi_f64(set, MPMI_F, 0)[(i * dim + j) * set->ld + slot];
   mpmi_invert3(F, inverse);
 }

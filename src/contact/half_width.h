@@ -29,7 +29,7 @@ static inline mpmi_widths mpmi_widths_of(const mpm_particles *set, int32_t copy)
 }
 
 /* Inverts F of a particle, the components on axes of the grid alone. */
-void mpmi_inverse_at(const mpm_particles *set, int32_t copy, int64_t slot, double inverse[3][3]);
+void mpmi_inverse_at(const mpm_particles *set, int64_t slot, double inverse[3][3]);
 
 /* Half-width of a particle along a unit vector: that of a ball, or with a field "size" of a box, that F
  * has deformed; at most half a cell, which on a total Lagrangian grid deforms with it. n: as the particle

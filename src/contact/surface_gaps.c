@@ -77,9 +77,9 @@ static void clear_block(void *user, const mpmi_visit *visit) {
   const mpmi_contact_nodes *contact = job->search->contact;
   const mpm_grid *grid = layout->blocks.grid;
   half_edge_cache last = {-1.0, 0.0};
-  /* stencils and drift take particles less than three spacings out of their block's nodes, steps any way */
-  const int32_t far = !job->search->copy &&
-                      mpmi_block_is_far(&layout->blocks, block, 3, &job->surface, near_enough * grid->h_min);
+  /* stencils and drift take particles less than three spacings out of their block's nodes, steps farther */
+  const int32_t far = mpmi_block_is_far(&layout->blocks, block, 3 + job->search->moved, &job->surface,
+                                        near_enough * grid->h_min);
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const mpmi_residents in = mpmi_residents_of(layout, m, block);
     double *clearance = contact->clearance + contact->clearance_first[in.member];
@@ -94,10 +94,10 @@ static void clear_block(void *user, const mpmi_visit *visit) {
 /* ---- gaps ---------------------------------------------------------------------------------------------- */
 /* Finds the direction in which what lies along n now lay before the material deformed, as a cloud that is a
  * mirror image sees it: that of F^-1 n. */
-static void pull_direction(const mpm_particles *set, int32_t copy, int64_t slot, int32_t mirrored,
-                           const double *n, double *direction) {
+static void pull_direction(const mpm_particles *set, int64_t slot, int32_t mirrored, const double *n,
+                           double *direction) {
   double inverse[3][3], sign[3], squared = 0.0;
-  mpmi_inverse_at(set, copy, slot, inverse);
+  mpmi_inverse_at(set, slot, inverse);
   for (int32_t k = 0; k < 3; ++k) sign[k] = mirrored >> k & 1 ? -1.0 : 1.0;
   for (int32_t i = 0; i < 3; ++i) {
     direction[i] = 0.0;
@@ -119,26 +119,23 @@ static int32_t is_beside(const mpm_grid *grid, const double *x, const double *n)
   return grid->dim == 1 || squared <= MPMI_CONTACT_REACH * MPMI_CONTACT_REACH;
 }
 
-/* way: of the node, by which particles have moved along, or NULL. */
-static double gap_of(const mpmi_contact_search *search, const mpmi_party *party, const double *n,
-                     const double *way) {
+/* Who is near the line is so at the start of the step. */
+static double gap_of(const mpmi_contact_search *search, const mpmi_party *party, const double *n) {
   const mpmi_layout *layout = search->step->layout;
   const mpmi_contact_nodes *contact = search->contact;
   double gap = (double)INFINITY;
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
     const mpmi_cloud *cloud = &contact->cloud[i], *source = &contact->cloud[cloud->source];
-    mpmi_cloud_frame frame = mpmi_cloud_frame_of(&layout->blocks, cloud);
+    const mpmi_cloud_frame frame = mpmi_cloud_frame_of(&layout->blocks, cloud);
     double x[3];
-    if (way) mpmi_cloud_frame_move(&frame, way);
     for (int64_t e = source->first; e < source->first + source->count; ++e) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
       const double clearance = contact->clearance[contact->clearance_first[entry->member] + entry->slot];
       if (!(clearance < gap)) continue;
       const mpm_particles *set = mpmi_resident_set(layout, entry->member);
-      mpmi_cloud_place(&frame, mpmi_places(set, search->copy), set->ld, entry->slot, x);
+      mpmi_cloud_place(&frame, mpmi_places(set, 0), set->ld, entry->slot, x);
       double along[3] = {n[0], n[1], n[2]};
-      if (mpmi_is_total_lagrangian(set->grid))
-        pull_direction(set, search->copy, entry->slot, cloud->mirrored, n, along);
+      if (mpmi_is_total_lagrangian(set->grid)) pull_direction(set, entry->slot, cloud->mirrored, n, along);
       if (is_beside(layout->blocks.grid, x, along)) gap = clearance;
     }
   }
@@ -164,17 +161,15 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch) {
   touch->friction_static = fmax(touch->rule->friction, touch->rule->friction_static);
   touch->area =
       area_of(contact, party, touch->normal) * mpmi_party_radius(search->step->layout, contact, party);
-  touch->gap = gap_of(search, party, touch->normal, NULL);
+  touch->gap = gap_of(search, party, touch->normal);
   touch->open =
       touch->rule->kind == MPM_CONTACT_UNILATERAL && !(touch->gap <= search->step->settings->grid->h_min);
 }
 
-/* Finds the gap of a touch once more, along the line of the start; places on a total Lagrangian grid do not
- * move. */
+/* Finds the gap of a touch once more: the least clearance that the same particles have now. */
 static void find_gap_after(const mpmi_contact_search *search, mpmi_touch *touch) {
-  const mpmi_party *party = &search->contact->party[touch->party[1]];
-  const int32_t stays = mpmi_is_total_lagrangian(search->step->layout->blocks.grid);
-  if (touch->asked) touch->gap_after = gap_of(search, party, touch->normal, stays ? NULL : touch->way);
+  if (touch->asked)
+    touch->gap_after = gap_of(search, &search->contact->party[touch->party[1]], touch->normal);
 }
 
 static void gap_task(void *data, int64_t k) {
@@ -241,7 +236,7 @@ static int32_t has_touches(const mpmi_contact_nodes *contact, int64_t i) {
   return contact->by_surface[i] < contact->by_surface[i + 1];
 }
 
-static int32_t is_asked(const mpmi_contact_nodes *contact, int64_t i) {
+static int32_t any_is_asked(const mpmi_contact_nodes *contact, int64_t i) {
   const int64_t *list = contact->by_surface + contact->surface_count + 1;
   int32_t asked = 0;
   for (int64_t k = contact->by_surface[i]; k < contact->by_surface[i + 1]; ++k)
@@ -269,7 +264,7 @@ mpm_status mpmi_surface_gaps_find_after(mpmi_contact_search *search) {
   for (int32_t i = 0; i < contact->surface_count && !status; ++i) {
     surface_job job = {search, i, contact->surface[i], step->t + step->dt};
     mpmi_surface_advance(&job.surface, step->dt);
-    if (is_asked(contact, i)) status = find_gaps_of(&job);
+    if (any_is_asked(contact, i)) status = find_gaps_of(&job);
   }
   return status;
 }

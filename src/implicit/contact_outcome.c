@@ -78,7 +78,7 @@ static double overlapped(const mpmi_balance *balance, const mpmi_constraint *of)
   double squared = 0.0;
   for (int32_t k = 0; k < grid->dim; ++k)
     squared += touch->normal[k] * touch->normal[k] * grid->inverse_spacing[k] * grid->inverse_spacing[k];
-  return touch->asked ? (fmin(0.0, touch->gap) - touch->gap_after) * sqrt(squared) : 0.0;
+  return (fmin(0.0, touch->gap) - touch->gap_after) * sqrt(squared);
 }
 
 typedef struct too_much {
@@ -89,15 +89,16 @@ typedef struct too_much {
 static const too_much slip = {slipped, 0.5, "slide", "half a cell"};
 static const too_much overlap = {overlapped, 0.25, "come to overlap", "a quarter of one"};
 
-/* Of several touches the one at the node with the smallest number is told. */
-static mpm_status check_here(const mpmi_balance *balance, const too_much *what, double most_force) {
+/* Of several asked touches the one at the node with the smallest number is told. */
+static mpm_status check_here(const mpmi_balance *balance, const too_much *what) {
   const mpmi_newton *newton = balance->newton;
   double told = 0.0;
   int64_t node = -1;
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     const mpmi_constraint *of = &newton->constraint[k];
-    const double measured = counts(balance, of, most_force) ? what->of(balance, of) : 0.0;
-    const int64_t slot = balance->nodes->contact.party[mpmi_touch_of(balance, of)->party[1]].slot,
+    const mpmi_touch *touch = mpmi_touch_of(balance, of);
+    const double measured = touch->asked ? what->of(balance, of) : 0.0;
+    const int64_t slot = balance->nodes->contact.party[touch->party[1]].slot,
                   number = measured > what->most ? mpmi_blocks_number(&balance->layout->blocks, slot) : -1;
     if (!(measured > what->most) || (node >= 0 && number >= node)) continue;
     told = measured;
@@ -112,27 +113,25 @@ static mpm_status check_here(const mpmi_balance *balance, const too_much *what, 
       mpmi_smaller_steps(balance));
 }
 
-/* Finds the largest force of a touch (collective). */
-static mpm_status find_most_force(const mpmi_balance *balance, double *most) {
+/* Asks the touches that count how far they have slid (collective). */
+static mpm_status check_slips(const mpmi_balance *balance) {
   const mpmi_newton *newton = balance->newton;
-  *most = 0.0;
+  mpmi_contact_nodes *contact = &balance->nodes->contact;
+  double most = 0.0;
   for (int64_t k = 0; k < newton->constraint_count; ++k)
-    *most = fmax(*most, mpmi_inner(newton->constraint[k].force,
-                                   mpmi_touch_of(balance, &newton->constraint[k])->normal));
-  return mpmi_largest_of_parts(balance, 1, most);
-}
-
-/* Returns the same on all parts. */
-static mpm_status check_touches(const mpmi_balance *balance, const too_much *what) {
-  double most_force;
-  mpm_status status = find_most_force(balance, &most_force);
-  if (!status) status = check_here(balance, what, most_force);
+    most = fmax(most, mpmi_inner(newton->constraint[k].force,
+                                 mpmi_touch_of(balance, &newton->constraint[k])->normal));
+  mpm_status status = mpmi_largest_of_parts(balance, 1, &most);
+  for (int64_t t = 0; t < contact->touch_count; ++t) contact->touch[t].asked = 0;
+  for (int64_t k = 0; k < newton->constraint_count && !status; ++k)
+    contact->touch[newton->constraint[k].touch].asked = counts(balance, &newton->constraint[k], most);
+  if (!status) status = check_here(balance, &slip);
   return mpmi_vote(balance, status, 0);
 }
 
 mpm_status mpmi_active_set_finish(mpmi_balance *balance) {
   const mpmi_newton *newton = balance->newton;
-  const mpm_status status = newton->touches ? check_touches(balance, &slip) : MPM_OK;
+  const mpm_status status = newton->touches ? check_slips(balance) : MPM_OK;
   if (status) return status;
   for (int64_t k = 0; k < newton->constraint_count; ++k) tell(balance, &newton->constraint[k]);
   mpmi_bound bound = {.step = balance->step,
@@ -144,13 +143,13 @@ mpm_status mpmi_active_set_finish(mpmi_balance *balance) {
 }
 
 /* ---- the gaps after the step --------------------------------------------------------------------------- */
-/* Bodies that have slid by less than this, in cells, are not asked for their gap: what comes near the line on
- * which it is measured may be rough, and steps of no length would be too long. */
+/* Bodies that have slid by less than this, in cells, are not asked for their gap: where they are rough it
+ * jumps with the particles that come near the line on which it is measured, in the shortest step, too. */
 static const double slid_at_all = 0.125;
 
-static int32_t is_asked(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
+static int32_t has_gap_after(const mpmi_balance *balance, const mpmi_constraint *of) {
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
-  return counts(balance, of, most_force) && !mpmi_detects_by_velocity(touch->rule) &&
+  return !mpmi_detects_by_velocity(touch->rule) &&
          (mpmi_is_of_surface(&balance->nodes->contact, touch) || slip_of(balance, of) >= slid_at_all);
 }
 
@@ -168,21 +167,30 @@ static void find_way(const mpmi_balance *balance, const mpmi_constraint *of, dou
   }
 }
 
-/* Marks the touches that are asked for their gap; tells whether there are any (collective). */
-static mpm_status ask(const mpmi_balance *balance, double *any) {
+/* Returns how many cells nodes have moved at most here, rounded up: particles have moved no farther. */
+static double cells_moved(const mpmi_balance *balance) {
+  const int64_t count = balance->newton->matrix.rows * balance->settings->grid->dim;
+  double most = 0.0;
+  for (int64_t i = 0; i < count; ++i) most = fmax(most, fabs(balance->newton->vector[MPMI_U][i]));
+  return ceil(most / balance->settings->grid->h_min);
+}
+
+/* Asks those touches of the ones that count for their gap that have one; tells whether there are any, and how
+ * far nodes have moved (collective). */
+static mpm_status ask(const mpmi_balance *balance, double *any, double *moved) {
   const mpmi_newton *newton = balance->newton;
   mpmi_contact_nodes *contact = &balance->nodes->contact;
-  double most_force;
-  const mpm_status status = find_most_force(balance, &most_force);
-  *any = 0.0;
-  for (int64_t t = 0; t < contact->touch_count; ++t) contact->touch[t].asked = 0;
-  for (int64_t k = 0; k < newton->constraint_count && !status; ++k) {
+  double most[] = {0.0, cells_moved(balance)};
+  for (int64_t k = 0; k < newton->constraint_count; ++k) {
     mpmi_touch *touch = &contact->touch[newton->constraint[k].touch];
-    touch->asked = is_asked(balance, &newton->constraint[k], most_force);
+    touch->asked = touch->asked && has_gap_after(balance, &newton->constraint[k]);
     if (touch->asked) find_way(balance, &newton->constraint[k], touch->way);
-    *any = fmax(*any, touch->asked);
+    most[0] = fmax(most[0], touch->asked);
   }
-  return status ? status : mpmi_largest_of_parts(balance, 1, any);
+  const mpm_status status = mpmi_largest_of_parts(balance, 2, most);
+  *any = most[0];
+  *moved = most[1];
+  return status;
 }
 
 mpm_status mpmi_active_set_look_back(mpmi_balance *balance) {
@@ -191,11 +199,12 @@ mpm_status mpmi_active_set_look_back(mpmi_balance *balance) {
                       .nodes = balance->nodes,
                       .values = &balance->nodes->solved,
                       .dim = balance->settings->grid->dim};
-  double any;
-  mpm_status status = ask(balance, &any);
+  double any, moved;
+  mpm_status status = ask(balance, &any, &moved);
   if (status || !(any > 0.0)) return status;
-  if (parts && parts->invites)
+  if (parts && parts->some_given)
     status = mpmi_layout_exchange_guests(balance->layout, balance->settings->context, 1);
-  if (!status) status = mpmi_vote(balance, mpmi_body_contacts_find_after(&bound), 0);
-  return status ? status : check_touches(balance, &overlap);
+  if (!status) status = mpmi_body_contacts_find_after(&bound, moved);
+  if (!status) status = check_here(balance, &overlap);
+  return mpmi_vote(balance, status, 0);
 }

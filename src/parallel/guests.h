@@ -21,7 +21,7 @@ typedef struct mpmi_host_set {
   const mpmi_arrangement *now;
 } mpmi_host_set;
 
-/* Sends the particles of blocks that are given to the partners that know these blocks as ghosts, and takes
+/* Sends the particles of the given blocks (parts.h) to the partners that know these as ghosts, and takes
  * theirs (collective). [count] sets; copy: of the fields that change in a step. */
 mpm_status mpmi_guests_exchange(mpmi_parts *parts, const mpmi_host_set *sets, int32_t count, int32_t copy);
 /* Forgets the guests of the step before. */

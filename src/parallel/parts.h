@@ -106,8 +106,8 @@ typedef struct mpmi_parts {
   struct mpmi_guest_set *guests;
   int32_t *guest_of; /* [blocks] 1 + the index of the ghost that has guests in this step, or 0 */
   int64_t guest_capacity;
-  uint8_t *given;  /* [blocks] 1: its particles are guests of other parts in this step */
-  int32_t invites; /* some part gives any */
+  uint8_t *given;     /* [blocks] 1: its particles are guests of other parts in this step */
+  int32_t some_given; /* by this part or another */
   int64_t given_capacity;
   int64_t leave_elsewhere;  /* particles that leave the grid on other parts in the step under way */
   int32_t is_echo;          /* the step fails here because it has failed on a partner */

@@ -83,7 +83,7 @@ mpm_status mpmi_together_touching(mpm_stepper *s) {
   mpmi_guests_clear(s->layout.parts);
   mpm_status status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 4, word);
   s->nodes.contact.anywhere = word[3] != 0;
-  s->layout.parts->invites = word[2] != 0;
+  s->layout.parts->some_given = word[2] != 0;
   if (!status && word[0]) status = mpmi_agree(c, mark ? MPM_OK : MPM_E_NOMEM);
   if (!status && word[1]) status = unite_pairs(s);
   if (!status && word[1]) {

@@ -1603,7 +1603,8 @@ pub struct mpm_distance_batch {
     pub n: i64,
     /// distance from component c to c + 1, in elements; >= n
     pub ld: i64,
-    /// time at the start of the step; in implicit steps with contact once more at its end, for particles that have moved
+    /// time at the start of the step; in implicit steps with contact a second time that at its end, for particles and the
+    /// pose of that time
     pub t: f64,
     /// [dim][ld]
     pub position: *const f64,
