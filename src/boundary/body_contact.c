@@ -403,7 +403,8 @@ static void sweep_task(void *data, int64_t k) {
 
 mpm_status mpmi_body_contacts_place(mpmi_bound *bound) {
   mpmi_contact_nodes *contact = &bound->nodes->contact;
-  mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact, 0, 0};
+  mpmi_contact_search search = {
+      .step = bound->step, .nodes = bound->nodes, .values = bound->values, .contact = contact};
   if (contact->measured || !contact->site_count) return MPM_OK;
   const mpm_status status = mpmi_sites_measure(&search);
   contact->measured = !status;
@@ -412,7 +413,8 @@ mpm_status mpmi_body_contacts_place(mpmi_bound *bound) {
 
 mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   mpmi_contact_nodes *contact = &bound->nodes->contact;
-  mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact, 0, 0};
+  mpmi_contact_search search = {
+      .step = bound->step, .nodes = bound->nodes, .values = bound->values, .contact = contact};
   mpm_status status = MPM_OK;
   mpmi_rigid_surfaces_predict(contact, bound->step->settings, bound->step->velocity_dt);
   if (!contact->site_count) return MPM_OK;
@@ -430,9 +432,13 @@ mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
 }
 
 mpm_status mpmi_body_contacts_find_after(mpmi_bound *bound, double moved) {
-  enum { FARTHEST = 1 << 20 };
-  mpmi_contact_search search = {
-      bound->step, bound->nodes, bound->values, &bound->nodes->contact, 1, (int64_t)fmin(moved, FARTHEST)};
+  enum { FARTHEST = 1 << 20 }; /* that is beyond all blocks */
+  mpmi_contact_search search = {.step = bound->step,
+                                .nodes = bound->nodes,
+                                .values = bound->values,
+                                .contact = &bound->nodes->contact,
+                                .copy = 1,
+                                .moved = (int64_t)fmin(moved, FARTHEST)};
   const mpm_status status = mpmi_surface_gaps_find_after(&search);
   return status ? status : mpmi_gaps_find_after(&search);
 }

@@ -100,7 +100,8 @@ static double whole_mass(const mpmi_light_search *s, int64_t slot) {
 /* ---- light or not -------------------------------------------------------------------------------------- */
 /* Returns 1 where contact may take the force on a node. */
 static int32_t may_touch(const mpmi_bound *bound, int64_t slot) {
-  const mpmi_contact_search search = {bound->step, bound->nodes, bound->values, &bound->nodes->contact, 0, 0};
+  const mpmi_contact_search search = {
+      .step = bound->step, .nodes = bound->nodes, .values = bound->values, .contact = &bound->nodes->contact};
   return bound->nodes->contact.site_count && mpmi_may_touch(&search, slot);
 }
 

@@ -32,8 +32,7 @@ static void place(const mpmi_balance *balance, const mpmi_party *party, int32_t 
     of->row[which] = newton->active[newton->active_of[party->slot]].row;
   } else {
     for (int32_t c = 0; c < balance->settings->grid->dim; ++c)
-      if (mpmi_held_by(balance->nodes, party->slot, c))
-        of->moves[c] += sign * dt * balance->nodes->held_value[party->slot][c];
+      of->moves[c] += sign * mpmi_held_way(balance, party->slot, c);
   }
 }
 

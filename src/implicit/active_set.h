@@ -65,6 +65,12 @@ static inline void mpmi_relative(const mpmi_balance *balance, const mpmi_constra
       if (of->row[i] >= 0) to[c] += (i ? 1.0 : -1.0) * u[(int64_t)of->row[i] * dim + c];
 }
 
+/* Returns how far what holds a component of a node takes it. */
+static inline double mpmi_held_way(const mpmi_balance *balance, int64_t slot, int32_t c) {
+  return mpmi_held_by(balance->nodes, slot, c) ? balance->step->dt * balance->nodes->held_value[slot][c]
+                                               : 0.0;
+}
+
 /* Takes out what friction and ties cannot stop, because nothing moves there by itself. */
 static inline void mpmi_stoppable(const mpmi_constraint *of, double *move) {
   for (int32_t c = 0; c < 3; ++c) move[c] = of->free[c] ? move[c] : 0.0;
@@ -99,6 +105,8 @@ void mpmi_active_set_harden(mpmi_balance *balance);
 double mpmi_active_set_error(const mpmi_balance *balance);
 /* Tells touches and reports what contact did (collective). MPM_CUT_DT: bodies slid too far for one step. */
 mpm_status mpmi_active_set_finish(mpmi_balance *balance);
+/* Asks the touches that mean something how far they have slid (collective). MPM_CUT_DT: too far. */
+mpm_status mpmi_active_set_check_slips(mpmi_balance *balance);
 /* Measures the gaps of closed touches where particles have come to (collective). MPM_CUT_DT: bodies have come
  * to overlap too far. */
 mpm_status mpmi_active_set_look_back(mpmi_balance *balance);

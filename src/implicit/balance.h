@@ -14,6 +14,7 @@
  *   condense.c             rows that move with others leave the system
  *   active_set.c           contact: which touches of bodies are closed
  *   contact_stiffness.c    their forces, and what they add to the matrix
+ *   contact_limits.c       bodies in contact that slide or come to overlap too far
  *   contact_outcome.c      what contact did in the step
  *   trouble.c              what steps that fail tell
  *   reactions.c            what walls, the host and prescribed particles exert

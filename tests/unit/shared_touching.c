@@ -267,11 +267,11 @@ START_TEST(light_touches_slide) {
 END_TEST
 
 /* Two layers, one on the other, that many parts share. They fly up together by a good part of a cell in each
- * step, while the upper one is pressed on the lower one: who took the particles of others for where they were
- * before would find that both overlap. */
+ * step, while the upper one is pressed on the lower one and slides: who took the particles of others for
+ * where they were before would find that both overlap. */
 static mpm_status set_up_layers(world *w, const scene *is) {
   static const double low[2][2] = {{0.1, 0.3}, {0.1, 0.45}}, high[2][2] = {{0.9, 0.45}, {0.9, 0.6}},
-                      v[2][2] = {{0.3, 1.0}, {0.3, 0.95}};
+                      v[2][2] = {{0.3, 1.0}, {0.6, 0.95}};
   const int32_t per_cell[] = {2, 2};
   mpm_status status = MPM_OK;
   (void)is;
