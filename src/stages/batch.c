@@ -91,7 +91,7 @@ void mpmi_gradient_present(mpmi_batch *b) {
 }
 
 /* Chooses the form of the gather: increments are needed by blends and by second-order positions, C by
- * transfers that carry it. */
+ * transfers that carry it, and L by all passes but those that only move particles which do not carry it. */
 static void choose_form(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const mpmi_transfer *transfer = settings->transfer;
@@ -101,6 +101,11 @@ static void choose_form(mpmi_batch *b) {
   const int32_t matrix = moves && transfer->carries == MPMI_CARRIES_MATRIX;
   if (transfer->moments == MPMI_NEED_MLS && !increments && !b->pass->plain) {
     b->form = MPMI_GATHER_MLS;
+    b->need = 0;
+    return;
+  }
+  if (b->pass->plain || (moves && !b->pass->deforms && transfer->carries == MPMI_CARRIES_NOTHING)) {
+    b->form = increments ? MPMI_GATHER_CHANGE : MPMI_GATHER_MEAN;
     b->need = 0;
     return;
   }

@@ -60,7 +60,7 @@ MPMI_INLINE void store_columns(int32_t dim, int32_t part, const mpmi_node *colum
 MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W,
                                  const double *inverse_spacing, int64_t p, const double *tile,
                                  mpmi_gathered *out) {
-  const int32_t values = mpmi_taken_values(mpmi_gather_takes(dim, form)), mls = form == MPMI_GATHER_MLS;
+  const int32_t values = mpmi_taken_values(mpmi_gather_takes(dim, form)), slopes = mpmi_gathers_L(form);
   const int32_t moment = moment_of(form), even = moment == EVEN_MOMENT, varied = moment == VARIED_MOMENT;
   const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW, part = values == 8 ? MPMI_HALF : MPMI_LOW;
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, mid = dim >= 2 ? dim - 2 : 0;
@@ -78,7 +78,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
         const mpmi_node vi = mpmi_node_load(all, node + k * values);
         add(all, part, even, width, k, W->w[last][k][p], vi, &rv, &rM);
-        if (!mls) add_slope(part, k, mpmi_gradient(dim, width, W, inverse_spacing, last, k, p), vi, &rL);
+        if (slopes) add_slope(part, k, mpmi_gradient(dim, width, W, inverse_spacing, last, k, p), vi, &rL);
         if (varied) add_slope(part, k, W->u[last][k][p], vi, &rM);
       }
       if (dim == 1) {
@@ -87,8 +87,8 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       }
       const double w = W->w[mid][j][p];
       add(all, part, even, width, j, w, rv, &pv, &pM[mid]);
-      if (!mls) add_slope(part, j, mpmi_gradient(dim, width, W, inverse_spacing, mid, j, p), rv, &pL[mid]);
-      if (!mls) add_slope(part, j, w, rL, &pL[last]);
+      if (slopes) add_slope(part, j, mpmi_gradient(dim, width, W, inverse_spacing, mid, j, p), rv, &pL[mid]);
+      if (slopes) add_slope(part, j, w, rL, &pL[last]);
       if (varied) add_slope(part, j, W->u[mid][j][p], rv, &pM[mid]);
       if (moment) add_slope(part, j, w, rM, &pM[last]);
     }
@@ -99,16 +99,16 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
     }
     const double w = W->w[0][i][p];
     add(all, part, even, width, i, w, pv, &v, &M[0]);
-    if (!mls) add_slope(part, i, mpmi_gradient(dim, width, W, inverse_spacing, 0, i, p), pv, &L[0]);
+    if (slopes) add_slope(part, i, mpmi_gradient(dim, width, W, inverse_spacing, 0, i, p), pv, &L[0]);
     if (varied) add_slope(part, i, W->u[0][i][p], pv, &M[0]);
     for (int32_t k = 1; k < dim; ++k) {
-      if (!mls) add_slope(part, i, w, pL[k], &L[k]);
+      if (slopes) add_slope(part, i, w, pL[k], &L[k]);
       if (moment) add_slope(part, i, w, pM[k], &M[k]);
     }
   }
   mpmi_store4(out->v + 4 * p, mpmi_node_low(all, v));
   if (values == 8) mpmi_store4(out->dv + 4 * p, mpmi_node_high(v));
-  if (!mls) store_columns(dim, part, L, p, out->L);
+  if (slopes) store_columns(dim, part, L, p, out->L);
   if (moment) store_columns(dim, part, M, p, out->M);
 }
 
@@ -141,13 +141,14 @@ MPMI_INLINE void store_matrix(int32_t dim, double *const *to, int64_t s, mpmi_la
  * batch on. */
 MPMI_INLINE void hand_on(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t q,
                          int64_t s, const mpmi_weights *W, const mpmi_gathered *in, mpmi_made *made) {
-  const int32_t mls = form == MPMI_GATHER_MLS, both = form >= MPMI_GATHER_BOTH;
+  const int32_t mls = form == MPMI_GATHER_MLS, both = mpmi_gathers_change(form);
+  const int32_t gradient = mls || mpmi_gathers_L(form);
   mpmi_lanes v[4], change[4] = {{0.0}}, L[3][3], column[3][4];
   const mpmi_lanes *const dv = both && dim < 3 ? v + 2 : change;
   mpmi_separate(in->v + 4 * q, v);
   if (both && dim == 3) mpmi_separate(in->dv + 4 * q, change);
-  take_columns(dim, mls ? in->M : in->L, q, column);
-  for (int32_t k = 0; k < dim; ++k) {
+  if (gradient) take_columns(dim, mls ? in->M : in->L, q, column);
+  for (int32_t k = 0; k < dim && gradient; ++k) {
     if (mls) even_column(width, job->axis[k].spacing, dim, mpmi_lanes_load(W->first[k] + q), v, column[k]);
     for (int32_t r = 0; r < dim; ++r) L[r][k] = column[k][r];
   }
@@ -156,9 +157,9 @@ MPMI_INLINE void hand_on(int32_t dim, int32_t width, int32_t form, const mpmi_ga
       mpmi_lanes_store(job->v + k * job->ld + s, v[k]);
       if (both) mpmi_lanes_store(job->dv + k * job->ld + s, dv[k]);
     }
-  if (job->L[0]) store_matrix(dim, job->L, s, L);
+  if (gradient && job->L[0]) store_matrix(dim, job->L, s, L);
   if (job->move) mpmi_move_lanes(dim, job->move, s, v, dv, &made->moved);
-  if (job->deform) mpmi_deform_lanes(dim, job->deform, s, L, &made->deformed);
+  if (gradient && job->deform) mpmi_deform_lanes(dim, job->deform, s, L, &made->deformed);
   if (!mpmi_gathers_C(form)) return;
   take_columns(dim, in->M, q, column);
   for (int32_t k = 0; k < dim; ++k) {
@@ -185,7 +186,7 @@ MPMI_INLINE void mask_holes(int32_t dim, int32_t width, int32_t form, const doub
   for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
       const double live = volume[p] > 0.0 ? 1.0 : 0.0;
       for (int32_t a = 0; a < (mpmi_gradients_alike(dim, width) ? dim : 1); ++a) W->w[a][k][p] *= live;
-      if (!mpmi_gradients_alike(dim, width) && form != MPMI_GATHER_MLS) W->g[0][k][p] *= live;
+      if (!mpmi_gradients_alike(dim, width) && mpmi_gathers_L(form)) W->g[0][k][p] *= live;
       if (moment_of(form) == VARIED_MOMENT) W->u[0][k][p] *= live;
     }
 }

@@ -10,10 +10,12 @@
 
 /* Forms of the gather: what particles take. */
 enum {
+  MPMI_GATHER_MEAN,          /* velocity */
   MPMI_GATHER_PLAIN,         /* velocity and L */
   MPMI_GATHER_AFFINE,        /* velocity, L and C, where D is the same for all particles */
   MPMI_GATHER_AFFINE_VARIED, /* the same where each has its own D */
   MPMI_GATHER_MLS,           /* velocity, and in the place of L the C of the MLS form */
+  MPMI_GATHER_CHANGE,        /* velocity and its change */
   MPMI_GATHER_BOTH,          /* velocity, its change and L */
   MPMI_GATHER_BOTH_AFFINE,   /* velocity, its change, L and C; D as above */
   MPMI_GATHER_BOTH_AFFINE_VARIED,
@@ -24,9 +26,17 @@ static inline int32_t mpmi_gathers_C(int32_t form) {
   return form == MPMI_GATHER_AFFINE || form == MPMI_GATHER_AFFINE_VARIED || form == MPMI_GATHER_BOTH_AFFINE ||
          form == MPMI_GATHER_BOTH_AFFINE_VARIED;
 }
+/* Tells whether a form takes L. */
+static inline int32_t mpmi_gathers_L(int32_t form) {
+  return form != MPMI_GATHER_MEAN && form != MPMI_GATHER_MLS && form != MPMI_GATHER_CHANGE;
+}
+/* Tells whether a form takes the change of velocity. */
+static inline int32_t mpmi_gathers_change(int32_t form) {
+  return form >= MPMI_GATHER_CHANGE;
+}
 /* Returns what the tile takes of nodes: below three axes a velocity and its change are four values. */
 static inline int32_t mpmi_gather_takes(int32_t dim, int32_t form) {
-  return form < MPMI_GATHER_BOTH ? MPMI_TAKE_HALF : dim < 3 ? MPMI_TAKE_PAIRS : MPMI_TAKE_ALL;
+  return !mpmi_gathers_change(form) ? MPMI_TAKE_HALF : dim < 3 ? MPMI_TAKE_PAIRS : MPMI_TAKE_ALL;
 }
 
 /* A batch of particles, and what becomes of what is gathered for them. `move` and `deform` work on it while

@@ -40,10 +40,12 @@ SCATTER_HALVES(4)
 #endif
 #ifdef GATHER
 #define GATHER_FORMS(dim, width)                                                                             \
+  GATHER(dim, width, MPMI_GATHER_MEAN, gather_##dim##_##width##_mean)                                        \
   GATHER(dim, width, MPMI_GATHER_PLAIN, gather_##dim##_##width##_plain)                                      \
   GATHER(dim, width, MPMI_GATHER_AFFINE, gather_##dim##_##width##_affine)                                    \
   GATHER(dim, width, MPMI_GATHER_AFFINE_VARIED, gather_##dim##_##width##_affine_varied)                      \
   GATHER(dim, width, MPMI_GATHER_MLS, gather_##dim##_##width##_mls)                                          \
+  GATHER(dim, width, MPMI_GATHER_CHANGE, gather_##dim##_##width##_change)                                    \
   GATHER(dim, width, MPMI_GATHER_BOTH, gather_##dim##_##width##_both)                                        \
   GATHER(dim, width, MPMI_GATHER_BOTH_AFFINE, gather_##dim##_##width##_both_affine)                          \
   GATHER(dim, width, MPMI_GATHER_BOTH_AFFINE_VARIED, gather_##dim##_##width##_both_affine_varied)

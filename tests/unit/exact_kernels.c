@@ -172,6 +172,41 @@ START_TEST(even_nodes_give_what_all_do) {
 }
 END_TEST
 
+/* Without the gradient velocities and their changes have the bits that they have beside it. */
+START_TEST(velocities_alone_are_the_same) {
+  static double row[ROWS][N], tile[8 * MOST], taken[2][24][N], volume[N];
+  const int32_t isa = MPM_ISA_BASELINE + _i % 4, dim = 1 + _i / 4 % 3, width = 2 + _i / 12;
+  if (!has_isa(isa)) return;
+  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  const mpmi_scatter of = scatter_of(kernels, dim, width, 110 + (uint64_t)_i, row);
+  dice d = {9 + (uint64_t)_i};
+  for (int32_t i = 0; i < 8 * MOST; ++i) tile[i] = throw_between(&d, -1.0, 1.0);
+  for (int32_t p = 0; p < N; ++p) volume[p] = p % 11 ? 1.0 : 0.0;
+  for (int32_t both = 0; both < 2; ++both) {
+    memset(taken, 0, sizeof taken);
+    for (int32_t gradient = 0; gradient < 2; ++gradient) {
+      mpmi_gather job = {.weights = of.weights,
+                         .need = gradient ? MPMI_NEED_GRADIENT | MPMI_NO_FIRST : 0,
+                         .points = of.points,
+                         .initial_volume = volume,
+                         .tile = tile,
+                         .ld = N,
+                         .v = taken[gradient][0],
+                         .dv = taken[gradient][3],
+                         .streams = {.end = N}};
+      for (int32_t k = 0; k < dim; ++k) job.axis[k] = of.axis[k];
+      for (int32_t e = 0; e < 9; ++e) job.L[e] = taken[gradient][6 + e];
+      const int32_t form[2][2] = {{MPMI_GATHER_MEAN, MPMI_GATHER_PLAIN},
+                                  {MPMI_GATHER_CHANGE, MPMI_GATHER_BOTH}};
+      kernels->gather[dim][width][form[both][gradient]](&job, 0, N);
+    }
+    ck_assert_mem_eq(taken[0], taken[1], 6 * N * sizeof(double));
+    for (int32_t e = 0; e < 6; ++e) ck_assert(taken[0][e][0] == 0.0);
+    for (int32_t e = 6; e < 15; ++e) ck_assert(taken[0][e][1] == 0.0);
+  }
+}
+END_TEST
+
 /* Whatever the squares of wave speeds let be passed over: the largest rate is the same in every bit, also
  * where it is far above all others, comes last, or is that of a particle at rest. */
 START_TEST(squares_lead_to_the_same_rate) {
@@ -235,6 +270,7 @@ TCase *kernels_case(void) {
   TCase *tc = tcase_create("kernels");
   tcase_add_loop_test(tc, halves_give_the_same_bits, 0, 6);
   tcase_add_loop_test(tc, even_nodes_take_what_all_do, 0, 36);
+  tcase_add_loop_test(tc, velocities_alone_are_the_same, 0, 36);
   tcase_add_loop_test(tc, even_nodes_give_what_all_do, 0, 24);
   tcase_add_loop_test(tc, flat_tiles_have_every_value, 0, 24);
   tcase_add_loop_test(tc, squares_lead_to_the_same_rate, 0, 12);
