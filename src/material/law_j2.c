@@ -28,15 +28,20 @@ static void prepare(const double *value, void *constants) {
 MPMI_INLINE void j2(int dim, const j2_constants *c, const mpm_material_batch *batch) {
   const double yield_initial = c->yield_initial, hardening = c->hardening;
   const double return_inverse = c->return_inverse, mu3 = 3.0 * c->elastic.mu;
+  const double lambda = c->elastic.lambda, mu = c->elastic.mu;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
-  const mpmi_increments in = mpmi_increments_of(&c->elastic, batch);
+  const mpmi_increments in = mpmi_increments_of(batch);
   const double *plastic_old = batch->state;
   double *stress = batch->stress_new, *plastic_new = batch->state_new;
-  if (!mpmi_keeps_state(dim, 1, batch)) {
+  const int64_t moving = mpmi_keeps_state(dim, 1, batch) ? 0 : n;
+  for (int64_t begin = 0; begin < moving; begin += MPMI_CHUNK) {
+    mpmi_increment_rows of;
+    mpmi_find_increments(dim, in, begin, &of);
     MPMI_IVDEP
-    for (int64_t i = 0; i < n; ++i) {
+    for (int p = 0; p < MPMI_CHUNK; ++p) {
+      const int64_t i = begin + p;
       double mean, plastic = plastic_old[i];
-      mpmi_sym d = mpmi_deviator(mpmi_trial_stress(dim, in, i), &mean);
+      mpmi_sym d = mpmi_deviator(mpmi_trial_stress(dim, lambda, mu, &of, p), &mean);
       double mises = sqrt(1.5 * mpmi_square(d)), yield = yield_initial + hardening * plastic;
       double increment = mpmi_max(mises - yield, 0.0) * return_inverse;
       /* Where there is an increment, mises > yield > 0: the maximum is mises, and never 0. */
@@ -56,8 +61,8 @@ MPMI_INLINE void j2_chunk(int dim, const j2_constants *c, const double *plastic,
   const double return_inverse = c->return_inverse, mu = c->elastic.mu, mu3 = 3.0 * mu;
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
-    mpmi_sym s = mpmi_load_sym(dim, o->turned[0], MPMI_CHUNK, p);
-    mpmi_sym v = mpmi_load_sym(dim, o->log_v[0], MPMI_CHUNK, p);
+    mpmi_sym s = mpmi_load_sym(dim, o->of.turned[0], MPMI_CHUNK, p);
+    mpmi_sym v = mpmi_load_sym(dim, o->of.log_v[0], MPMI_CHUNK, p);
     mpmi_sym trial = {s.xx + 2.0 * mu * v.xx, s.yy + 2.0 * mu * v.yy, s.zz + 2.0 * mu * v.zz,
                       s.xy + 2.0 * mu * v.xy, s.yz + 2.0 * mu * v.yz, s.xz + 2.0 * mu * v.xz};
     double mean;

@@ -5,11 +5,16 @@ static const mpmi_law_param params[] = {PARAMS_ELASTIC};
 
 MPMI_INLINE void linear_elastic(int dim, const mpmi_elastic *c, const mpm_material_batch *batch) {
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
-  const mpmi_increments in = mpmi_increments_of(c, batch);
+  const mpmi_increments in = mpmi_increments_of(batch);
+  const double lambda = c->lambda, mu = c->mu;
   double *stress = batch->stress_new;
-  if (!mpmi_keeps_state(dim, 0, batch)) {
+  const int64_t moving = mpmi_keeps_state(dim, 0, batch) ? 0 : n;
+  for (int64_t begin = 0; begin < moving; begin += MPMI_CHUNK) {
+    mpmi_increment_rows of;
+    mpmi_find_increments(dim, in, begin, &of);
     MPMI_IVDEP
-    for (int64_t i = 0; i < n; ++i) mpmi_store_sym(dim, stress, ld, i, mpmi_trial_stress(dim, in, i));
+    for (int p = 0; p < MPMI_CHUNK; ++p)
+      mpmi_store_sym(dim, stress, ld, begin + p, mpmi_trial_stress(dim, lambda, mu, &of, p));
   }
   mpmi_elastic_outputs(dim, c, batch);
 }

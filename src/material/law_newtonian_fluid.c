@@ -46,32 +46,50 @@ MPMI_INLINE void compression(int dim, const fluid_constants *c, const mpm_materi
   }
 }
 
-/* Adds the viscous stress: of the step; or, where the law is asked for the state as it is (dt = 0), the
- * deviator of the old stress, which is the viscous stress of the last step. */
+MPMI_INLINE void add_deviator(int dim, double factor, mpmi_sym of, double *stress, int64_t ld, int64_t i) {
+  double mean;
+  mpmi_sym s = mpmi_load_sym(dim, stress, ld, i), v = mpmi_deviator(of, &mean);
+  s.xx += factor * v.xx;
+  s.yy += factor * v.yy;
+  s.zz += factor * v.zz;
+  s.xy += factor * v.xy;
+  s.yz += factor * v.yz;
+  s.xz += factor * v.xz;
+  mpmi_store_sym(dim, stress, ld, i, s);
+}
+
+/* Adds the viscous stress of the step. */
 MPMI_INLINE void add_shear(int dim, const fluid_constants *c, const mpm_material_batch *batch) {
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
-  const double dt = batch->dt, factor = dt > 0.0 ? 2.0 * c->viscosity / dt : 1.0;
-  const double *L = batch->L, *old = batch->stress;
+  const double factor = 2.0 * c->viscosity / batch->dt;
+  const mpmi_increments in = mpmi_increments_of(batch);
+  double *stress = batch->stress_new;
+  for (int64_t begin = 0; begin < n; begin += MPMI_CHUNK) {
+    mpmi_increment_rows of;
+    mpmi_find_increments(dim, in, begin, &of);
+    MPMI_IVDEP
+    for (int p = 0; p < MPMI_CHUNK; ++p)
+      add_deviator(dim, factor, mpmi_load_sym(dim, of.log_v[0], MPMI_CHUNK, p), stress, ld, begin + p);
+  }
+}
+
+/* Adds that of the step before, which is the deviator of the old stress: dt = 0 asks about the state as it
+ * is. */
+MPMI_INLINE void add_old_shear(int dim, const mpm_material_batch *batch) {
+  const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
+  const double *old = batch->stress;
   double *stress = batch->stress_new;
   MPMI_IVDEP
-  for (int64_t i = 0; i < n; ++i) {
-    mpmi_sym s = mpmi_load_sym(dim, stress, ld, i), v = mpmi_load_sym(dim, old, ld, i);
-    double mean;
-    if (dt > 0.0) v = mpmi_log_increment(dim, mpmi_load_mat(dim, L, ld, i, 0.0, dt), &v);
-    v = mpmi_deviator(v, &mean);
-    s.xx += factor * v.xx;
-    s.yy += factor * v.yy;
-    s.zz += factor * v.zz;
-    s.xy += factor * v.xy;
-    s.yz += factor * v.yz;
-    s.xz += factor * v.xz;
-    mpmi_store_sym(dim, stress, ld, i, s);
-  }
+  for (int64_t i = 0; i < n; ++i) add_deviator(dim, 1.0, mpmi_load_sym(dim, old, ld, i), stress, ld, i);
 }
 
 MPMI_INLINE void newtonian_fluid(int dim, const fluid_constants *c, const mpm_material_batch *batch) {
   compression(dim, c, batch);
-  if (c->viscosity > 0.0) add_shear(dim, c, batch);
+  if (!(c->viscosity > 0.0)) return;
+  if (batch->dt > 0.0)
+    add_shear(dim, c, batch);
+  else
+    add_old_shear(dim, batch);
 }
 
 /* With t = -J p: c_ijkl = J dt/dJ d_ij d_kl - t (d_ik d_jl + d_il d_jk). */
@@ -94,11 +112,11 @@ MPMI_INLINE void compression_tangent(int dim, const fluid_constants *c, const mp
 MPMI_INLINE void shear_chunk(int dim, const fluid_constants *c, const mpm_material_batch *batch,
                              int64_t begin, mpmi_objective *o) {
   const double shear = c->viscosity / batch->dt;
+  mpmi_objective_load(dim, o, batch, begin);
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     double mean_log;
-    mpmi_objective_load(dim, o, p, batch, begin + p);
-    mpmi_sym v = mpmi_deviator(mpmi_load_sym(dim, o->log_v[0], MPMI_CHUNK, p), &mean_log);
+    mpmi_sym v = mpmi_deviator(mpmi_load_sym(dim, o->of.log_v[0], MPMI_CHUNK, p), &mean_log);
     mpmi_store_sym(dim, o->stress[0], MPMI_CHUNK, p, mpmi_shifted(2.0 * shear, v, 0.0));
     o->bulk[p] = 0.0;
     o->shear[p] = shear;
@@ -111,7 +129,7 @@ MPMI_INLINE void add_shear_tangent(int dim, const fluid_constants *c, const mpm_
   memset(o.bend, 0, sizeof o.bend);
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     shear_chunk(dim, c, batch, i, &o);
-    memset(o.turned, 0, sizeof o.turned); /* the viscous stress does not depend on the old stress */
+    memset(o.of.turned, 0, sizeof o.of.turned); /* the viscous stress does not depend on the old stress */
     KERNEL(objective_rows)(dim, 1, &o, tangent + i, batch->ld);
   }
 }

@@ -10,36 +10,76 @@
 
 #include "material/elastic_constants.h"
 #include "material/isotropic_function.h"
+#include "material/small_stretch.h"
+#include "simd/lanes.h"
 #include "simd/tensor.h"
 #include "simd/vector_math.h"
 
-/* Returns ln V in the plane for V V = I + e, with det(V V) and half the trace of ln V. With the eigenvalues
- * m + d and m - d of e, ln V = half_trace I + s (e - m I) with s = 1/(4 d) ln((1 + m + d) / (1 + m - d)). The
- * tiny number keeps d from 0 without changing s. */
-MPMI_INLINE mpmi_sym mpmi_log_stretch_2d(mpmi_sym e, double square, double half_trace) {
-  double m = 0.5 * (e.xx + e.yy), h = 0.5 * (e.xx - e.yy);
-  double d = sqrt((h * h + e.xy * e.xy) + 1e-60);
-  double ratio_minus_1 = 2.0 * d * (1.0 + m + d) / square;
-  double slope = 0.25 * mpmi_lane_log1p(ratio_minus_1) / d;
-  mpmi_sym log_v = {half_trace + slope * h, half_trace - slope * h, 0.0, slope * e.xy, 0.0, 0.0};
-  return log_v;
+/* ---- one increment ------------------------------------------------------------------------------------ */
+/* What is known of V V = I + e in the plane: e has the eigenvalues mean + d and mean - d, d^2 = half^2 +
+ * shear^2. */
+typedef struct mpmi_plane_stretch {
+  double mean, half, shear, half_trace; /* half of tr(ln V) */
+  double square;                        /* det(V V) */
+} mpmi_plane_stretch;
+
+MPMI_INLINE mpmi_plane_stretch mpmi_plane_stretch_of(mpmi_sym e, double square, double half_trace) {
+  mpmi_plane_stretch s = {0.5 * (e.xx + e.yy), 0.5 * (e.xx - e.yy), e.xy, half_trace, square};
+  return s;
 }
 
-/* Does what mpmi_log_increment() does, in 2-D. */
-MPMI_INLINE mpmi_sym mpmi_increment_2d(mpmi_mat g, mpmi_sym *stress) {
-  /* V is symmetric when R turns by the angle whose cosine and sine are as along and across. Written as a
-   * change of the stress, so that no rotation leaves it as it is. */
+MPMI_INLINE mpmi_plane_stretch mpmi_plane_stretch_by(mpmi_mat g) {
+  double det_minus_1 = mpmi_det_minus_1(2, g), det = 1.0 + det_minus_1;
+  return mpmi_plane_stretch_of(mpmi_left_cauchy_green_minus_1(2, g), det * det,
+                               0.5 * mpmi_lane_log1p(det_minus_1));
+}
+
+/* Returns (d / (1 + mean))^2. */
+MPMI_INLINE double mpmi_plane_ratio_squared(mpmi_plane_stretch s) {
+  double inverse = 1.0 / (1.0 + s.mean);
+  return (s.half * s.half + s.shear * s.shear) * inverse * inverse;
+}
+
+/* ln V = half_trace I + slope (e - mean I), with slope = 1/(4 d) ln((1 + mean + d) / (1 + mean - d)). */
+MPMI_INLINE mpmi_sym mpmi_plane_log_stretch(mpmi_plane_stretch s, double slope) {
+  mpmi_sym v = {s.half_trace + slope * s.half, s.half_trace - slope * s.half, 0.0, slope * s.shear, 0.0, 0.0};
+  return v;
+}
+
+/* The tiny number keeps d from 0 without changing the slope. */
+MPMI_INLINE double mpmi_plane_slope(mpmi_plane_stretch s) {
+  double d = sqrt((s.half * s.half + s.shear * s.shear) + 1e-60);
+  double ratio_minus_1 = 2.0 * d * (1.0 + s.mean + d) / s.square;
+  return 0.25 * mpmi_lane_log1p(ratio_minus_1) / d;
+}
+
+/* The same where z = (d / (1 + mean))^2 is small: artanh(sqrt z) / sqrt z by its series. */
+MPMI_INLINE double mpmi_small_plane_slope(mpmi_plane_stretch s, double z) {
+  return (0.5 + 0.25 * mpmi_log_series(z)) / (1.0 + s.mean);
+}
+
+/* Returns R S R^T in the plane. V is symmetric when R turns by the angle whose cosine and sine are as along
+ * and across. Written as a change of the stress, so that no rotation leaves it as it is. */
+MPMI_INLINE mpmi_sym mpmi_turned_in_plane(mpmi_mat g, mpmi_sym stress) {
   double along = 2.0 + (g.xx + g.yy), across = g.yx - g.xy;
   double turn = 2.0 * across / (along * along + across * across);
-  double half = 0.5 * (stress->xx - stress->yy), shear = stress->xy;
+  double half = 0.5 * (stress.xx - stress.yy), shear = stress.xy;
   double shift = turn * (along * shear + across * half);
-  stress->xx -= shift;
-  stress->yy += shift;
-  stress->xy += turn * (along * half - across * shear);
+  stress.xx -= shift;
+  stress.yy += shift;
+  stress.xy += turn * (along * half - across * shear);
+  return stress;
+}
 
-  double det_minus_1 = mpmi_det_minus_1(2, g), det = 1.0 + det_minus_1;
-  return mpmi_log_stretch_2d(mpmi_left_cauchy_green_minus_1(2, g), det * det,
-                             0.5 * mpmi_lane_log1p(det_minus_1));
+/* Returns R = V^-1 F_inc = W + W G. */
+MPMI_INLINE mpmi_mat mpmi_turn_of(mpmi_sym w, mpmi_mat g) {
+  mpmi_mat r = {
+      w.xx + w.xx * g.xx + w.xy * g.yx + w.xz * g.zx, w.xy + w.xx * g.xy + w.xy * g.yy + w.xz * g.zy,
+      w.xz + w.xx * g.xz + w.xy * g.yz + w.xz * g.zz, w.xy + w.xy * g.xx + w.yy * g.yx + w.yz * g.zx,
+      w.yy + w.xy * g.xy + w.yy * g.yy + w.yz * g.zy, w.yz + w.xy * g.xz + w.yy * g.yz + w.yz * g.zz,
+      w.xz + w.xz * g.xx + w.yz * g.yx + w.zz * g.zx, w.yz + w.xz * g.xy + w.yz * g.yy + w.zz * g.zy,
+      w.zz + w.xz * g.xz + w.yz * g.yz + w.zz * g.zz};
+  return r;
 }
 
 /* Returns R S R^T. */
@@ -55,49 +95,108 @@ MPMI_INLINE mpmi_sym mpmi_turned(mpmi_mat r, mpmi_sym s) {
   return t;
 }
 
-/* Does what mpmi_log_increment() does, in 3-D. */
-MPMI_INLINE mpmi_sym mpmi_increment_3d(mpmi_mat g, mpmi_sym *stress) {
-  mpmi_sym e = mpmi_left_cauchy_green_minus_1(3, g);
-  mpmi_eigenvalue_nodes n = mpmi_eigenvalues(e);
-  mpmi_sym q = mpmi_quadratic(e, n), w = mpmi_inverse_stretch(e, q, n);
-  /* R = V^-1 F_inc = V^-1 + V^-1 G */
-  mpmi_mat r = {
-      w.xx + w.xx * g.xx + w.xy * g.yx + w.xz * g.zx, w.xy + w.xx * g.xy + w.xy * g.yy + w.xz * g.zy,
-      w.xz + w.xx * g.xz + w.xy * g.yz + w.xz * g.zz, w.xy + w.xy * g.xx + w.yy * g.yx + w.yz * g.zx,
-      w.yy + w.xy * g.xy + w.yy * g.yy + w.yz * g.zy, w.yz + w.xy * g.xz + w.yy * g.yz + w.yz * g.zz,
-      w.xz + w.xz * g.xx + w.yz * g.yx + w.zz * g.zx, w.yz + w.xz * g.xy + w.yz * g.yy + w.zz * g.zy,
-      w.zz + w.xz * g.xz + w.yz * g.yz + w.zz * g.zz};
-  *stress = mpmi_turned(r, *stress);
-  return mpmi_log_stretch(e, q, n);
+/* What an increment is: ln V, and the stress turned with R. */
+typedef struct mpmi_increment {
+  mpmi_sym log_v, turned;
+} mpmi_increment;
+
+/* Returns the increment of G if it is small: where *size is at most MPMI_SMALL_INCREMENT(dim). In 1-D all
+ * are. */
+#define MPMI_SMALL_INCREMENT(dim) ((dim) == 3 ? MPMI_SMALL_SQUARE : MPMI_LOG_SERIES_END)
+MPMI_INLINE mpmi_increment mpmi_small_increment(int dim, mpmi_mat g, mpmi_sym stress, double *size) {
+  mpmi_increment o = {{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, stress};
+  if (dim == 3) {
+    mpmi_sym e = mpmi_left_cauchy_green_minus_1(3, g);
+    mpmi_powers of = mpmi_powers_of(e);
+    *size = of.square.xx + of.square.yy + of.square.zz;
+    o.log_v = mpmi_small_log_stretch(e, &of);
+    o.turned = mpmi_turned(mpmi_turn_of(mpmi_small_inverse_stretch(e, &of), g), stress);
+  } else if (dim == 2) {
+    mpmi_plane_stretch s = mpmi_plane_stretch_by(g);
+    *size = mpmi_plane_ratio_squared(s);
+    o.log_v = mpmi_plane_log_stretch(s, mpmi_small_plane_slope(s, *size));
+    o.turned = mpmi_turned_in_plane(g, stress);
+  } else {
+    *size = 0.0;
+    o.log_v.xx = mpmi_lane_log1p(g.xx);
+  }
+  return o;
 }
 
-/* Turns the stress with R and returns ln V; g = F_inc - I. */
-MPMI_INLINE mpmi_sym mpmi_log_increment(int dim, mpmi_mat g, mpmi_sym *stress) {
-  mpmi_sym v = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  if (dim == 2) return mpmi_increment_2d(g, stress);
-  if (dim == 3) return mpmi_increment_3d(g, stress);
-  v.xx = mpmi_lane_log1p(g.xx);
-  return v;
+/* Returns it whatever its size; in 2-D and 3-D alone. */
+MPMI_INLINE mpmi_increment mpmi_any_increment(int dim, mpmi_mat g, mpmi_sym stress) {
+  mpmi_increment o;
+  if (dim == 3) {
+    mpmi_sym e = mpmi_left_cauchy_green_minus_1(3, g);
+    mpmi_eigenvalue_nodes n = mpmi_eigenvalues(e);
+    mpmi_sym q = mpmi_quadratic(e, n);
+    o.log_v = mpmi_log_stretch(e, q, n);
+    o.turned = mpmi_turned(mpmi_turn_of(mpmi_inverse_stretch(e, q, n), g), stress);
+  } else {
+    mpmi_plane_stretch s = mpmi_plane_stretch_by(g);
+    o.log_v = mpmi_plane_log_stretch(s, mpmi_plane_slope(s));
+    o.turned = mpmi_turned_in_plane(g, stress);
+  }
+  return o;
 }
 
-/* Holds what the trial stress needs. It is read before the loop, so that the compiler sees that no store
- * changes it. */
+/* ---- the increments of a chunk ------------------------------------------------------------------------ */
+/* What they are made of. It is read before the loops, so that the compiler sees that no store changes it. */
 typedef struct mpmi_increments {
   const double *L, *stress;
   int64_t ld;
-  double dt, lambda, mu;
+  double dt;
 } mpmi_increments;
 
-MPMI_INLINE mpmi_increments mpmi_increments_of(const mpmi_elastic *c, const mpm_material_batch *batch) {
-  mpmi_increments in = {batch->L, batch->stress, batch->ld, batch->dt, c->lambda, c->mu};
+MPMI_INLINE mpmi_increments mpmi_increments_of(const mpm_material_batch *batch) {
+  mpmi_increments in = {batch->L, batch->stress, batch->ld, batch->dt};
   return in;
 }
 
-/* Returns the old stress turned, plus lambda tr(ln V) I + 2 mu ln V. */
-MPMI_INLINE mpmi_sym mpmi_trial_stress(int dim, mpmi_increments in, int64_t i) {
-  mpmi_sym s = mpmi_load_sym(dim, in.stress, in.ld, i);
-  mpmi_sym v = mpmi_log_increment(dim, mpmi_load_mat(dim, in.L, in.ld, i, 0.0, in.dt), &s);
-  double pressure = in.lambda * (v.xx + v.yy + v.zz), mu2 = 2.0 * in.mu;
+typedef struct mpmi_increment_rows {
+  _Alignas(64) double log_v[6][MPMI_CHUNK], turned[6][MPMI_CHUNK];
+} mpmi_increment_rows;
+
+MPMI_INLINE mpmi_sym mpmi_selected(int32_t first, mpmi_sym a, mpmi_sym b) {
+  mpmi_sym s = {first ? a.xx : b.xx, first ? a.yy : b.yy, first ? a.zz : b.zz,
+                first ? a.xy : b.xy, first ? a.yz : b.yz, first ? a.xz : b.xz};
+  return s;
+}
+
+/* Finds the increments of the chunk from particle `begin` on. Those of a step are mostly small; where one is
+ * not, all are found both ways and each is taken by its own size, so that it does not depend on others. */
+MPMI_INLINE void mpmi_find_increments(int dim, mpmi_increments in, int64_t begin, mpmi_increment_rows *out) {
+  const double small = MPMI_SMALL_INCREMENT(dim);
+  _Alignas(64) double size[MPMI_CHUNK];
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, begin + p, 0.0, in.dt);
+    mpmi_increment o =
+        mpmi_small_increment(dim, g, mpmi_load_sym(dim, in.stress, in.ld, begin + p), &size[p]);
+    mpmi_store_sym(dim, out->log_v[0], MPMI_CHUNK, p, o.log_v);
+    mpmi_store_sym(dim, out->turned[0], MPMI_CHUNK, p, o.turned);
+  }
+  mpmi_lanes largest = mpmi_lanes_load(size);
+  for (int p = MPMI_LANES; p < MPMI_CHUNK; p += MPMI_LANES)
+    largest = mpmi_lanes_max(largest, mpmi_lanes_load(size + p));
+  if (dim == 1 || !(mpmi_lanes_largest(largest) > small)) return;
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, begin + p, 0.0, in.dt);
+    mpmi_increment o = mpmi_any_increment(dim, g, mpmi_load_sym(dim, in.stress, in.ld, begin + p));
+    mpmi_sym v = mpmi_load_sym(dim, out->log_v[0], MPMI_CHUNK, p);
+    mpmi_sym s = mpmi_load_sym(dim, out->turned[0], MPMI_CHUNK, p);
+    mpmi_store_sym(dim, out->log_v[0], MPMI_CHUNK, p, mpmi_selected(size[p] <= small, v, o.log_v));
+    mpmi_store_sym(dim, out->turned[0], MPMI_CHUNK, p, mpmi_selected(size[p] <= small, s, o.turned));
+  }
+}
+
+/* Returns the old stress turned, plus lambda tr(ln V) I + 2 mu ln V, of particle p of the chunk. */
+MPMI_INLINE mpmi_sym mpmi_trial_stress(int dim, double lambda, double mu, const mpmi_increment_rows *of,
+                                       int p) {
+  mpmi_sym s = mpmi_load_sym(dim, of->turned[0], MPMI_CHUNK, p);
+  mpmi_sym v = mpmi_load_sym(dim, of->log_v[0], MPMI_CHUNK, p);
+  double pressure = lambda * (v.xx + v.yy + v.zz), mu2 = 2.0 * mu;
   s.xx += pressure + mu2 * v.xx;
   s.yy += pressure + mu2 * v.yy;
   s.zz += pressure + mu2 * v.zz;
@@ -107,6 +206,7 @@ MPMI_INLINE mpmi_sym mpmi_trial_stress(int dim, mpmi_increments in, int64_t i) {
   return s;
 }
 
+/* ---- stress and energy -------------------------------------------------------------------------------- */
 /* Returns the deviator of s; a third of the trace goes to *mean. */
 MPMI_INLINE mpmi_sym mpmi_deviator(mpmi_sym s, double *mean) {
   *mean = (s.xx + s.yy + s.zz) * (1.0 / 3.0);

@@ -6,8 +6,8 @@ MPMI_INLINE double contracted(mpmi_sym a, mpmi_sym b) {
 
 /* Change of the stress with D. */
 MPMI_INLINE mpmi_sym stress_slope(int dim, const mpmi_objective *o, int p, mpmi_sym d) {
-  mpmi_sym log_v = mpmi_load_sym(dim, o->log_v[0], MPMI_CHUNK, p);
-  mpmi_sym turned = mpmi_load_sym(dim, o->turned[0], MPMI_CHUNK, p);
+  mpmi_sym log_v = mpmi_load_sym(dim, o->of.log_v[0], MPMI_CHUNK, p);
+  mpmi_sym turned = mpmi_load_sym(dim, o->of.turned[0], MPMI_CHUNK, p);
   mpmi_sym bend = mpmi_load_sym(dim, o->bend[0], MPMI_CHUNK, p);
   mpmi_vector u = mpmi_commutator(dim, log_v, d);
   mpmi_vector of_v = mpmi_transformed(dim, mpmi_load_sym(dim, o->stretching[0], MPMI_CHUNK, p), u);

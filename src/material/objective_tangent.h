@@ -11,33 +11,33 @@
 /* bulk: d mean / tr D. The return changes by -(bend : d) bend when the deviator before it changes by d. */
 typedef struct mpmi_objective {
   _Alignas(64) double jacobian[MPMI_CHUNK], bulk[MPMI_CHUNK], shear[MPMI_CHUNK], keep[MPMI_CHUNK];
-  double stress[6][MPMI_CHUNK], turned[6][MPMI_CHUNK], log_v[6][MPMI_CHUNK], bend[6][MPMI_CHUNK];
+  double stress[6][MPMI_CHUNK], bend[6][MPMI_CHUNK];
+  mpmi_increment_rows of;
   double stretching[6][MPMI_CHUNK], turning[6][MPMI_CHUNK];
   double slope[6][6][MPMI_CHUNK]; /* of the stress: by D, then by component */
 } mpmi_objective;
 
-/* Loads what all of these laws need of a particle: p in the chunk, i in the batch. */
-MPMI_INLINE void mpmi_objective_load(int dim, mpmi_objective *o, int p, const mpm_material_batch *batch,
-                                     int64_t i) {
-  const int64_t ld = batch->ld;
-  mpmi_sym turned = mpmi_load_sym(dim, batch->stress, ld, i);
-  mpmi_sym log_v = mpmi_log_increment(dim, mpmi_load_mat(dim, batch->L, ld, i, 0.0, batch->dt), &turned);
-  mpmi_spins spins = mpmi_spins_of(dim, log_v);
-  o->jacobian[p] = 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, batch->F, ld, i));
-  o->keep[p] = 1.0;
-  mpmi_store_sym(dim, o->turned[0], MPMI_CHUNK, p, turned);
-  mpmi_store_sym(dim, o->log_v[0], MPMI_CHUNK, p, log_v);
-  mpmi_store_sym(dim, o->stretching[0], MPMI_CHUNK, p, spins.stretching);
-  mpmi_store_sym(dim, o->turning[0], MPMI_CHUNK, p, spins.turning);
+/* Loads what all of these laws need of the chunk from particle `begin` on. */
+MPMI_INLINE void mpmi_objective_load(int dim, mpmi_objective *o, const mpm_material_batch *batch,
+                                     int64_t begin) {
+  mpmi_find_increments(dim, mpmi_increments_of(batch), begin, &o->of);
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    mpmi_spins spins = mpmi_spins_of(dim, mpmi_load_sym(dim, o->of.log_v[0], MPMI_CHUNK, p));
+    o->jacobian[p] = 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, batch->F, batch->ld, begin + p));
+    o->keep[p] = 1.0;
+    mpmi_store_sym(dim, o->stretching[0], MPMI_CHUNK, p, spins.stretching);
+    mpmi_store_sym(dim, o->turning[0], MPMI_CHUNK, p, spins.turning);
+  }
 }
 
 /* Loads the chunk from particle `begin` on for an elastic law. */
 MPMI_INLINE void mpmi_elastic_chunk(int dim, const mpmi_elastic *c, const mpm_material_batch *batch,
                                     int64_t begin, mpmi_objective *o) {
   const double mu = c->mu, bulk = c->lambda + (2.0 / 3.0) * mu;
+  mpmi_objective_load(dim, o, batch, begin);
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
-    mpmi_objective_load(dim, o, p, batch, begin + p);
     mpmi_store_sym(dim, o->stress[0], MPMI_CHUNK, p,
                    mpmi_load_sym(dim, batch->stress_new, batch->ld, begin + p));
     o->bulk[p] = bulk;

@@ -69,7 +69,9 @@ MPMI_INLINE mpmi_sym mpmi_half_log(int dim, mpmi_sym b) {
   }
   if (dim == 2) {
     double square_minus_1 = (b.xx + b.yy) + (b.xx * b.yy - b.xy * b.xy);
-    e = mpmi_log_stretch_2d(b, 1.0 + square_minus_1, 0.25 * mpmi_lane_log1p(square_minus_1));
+    mpmi_plane_stretch s =
+        mpmi_plane_stretch_of(b, 1.0 + square_minus_1, 0.25 * mpmi_lane_log1p(square_minus_1));
+    e = mpmi_plane_log_stretch(s, mpmi_plane_slope(s));
     e.zz = 0.5 * mpmi_lane_log1p(b.zz);
     return e;
   }

@@ -63,11 +63,11 @@ START_TEST(formula) {
   int32_t dim = loop_dim(_i);
   mpm_material *material = law_material(loop_isa(_i), "linear_elastic", params, 3);
   if (!material) return;
-  static const real sizes[] = {1e-20L, 1e-12L, 1e-7L, 1e-4L, 1e-2L, 0.3L, 0.9L};
+  static const real sizes[] = {1e-20L, 1e-12L, 1e-7L, 1e-4L, 2e-3L, 5e-3L, 1e-2L, 0.1L, 0.3L, 0.9L};
   uint64_t state = 11;
   sample s;
-  for (int k = 0; k < 7 * 2; ++k) {
-    real tolerance = k < 12 ? 6e-16L : 1e-14L; /* the last increments flatten to a quarter and less at once */
+  for (int k = 0; k < 10 * 2; ++k) {
+    real tolerance = k < 18 ? 6e-16L : 1e-14L; /* the last increments flatten to a quarter and less at once */
     real stress_size = k % 2 ? 1e-2L * p_modulus() : 0;
     sample_clear(&s, dt);
     for (int i = 0; i < ITEMS; ++i) {
@@ -132,6 +132,33 @@ START_TEST(objectivity) {
     ck_assert(sample_error(&r, dim, i, turned(q[i], sample_stress(&s, dim, i))) <= 1e-13L * p_modulus());
     ck_assert_double_eq_tol(r.energy[i], s.energy[i], 1e-13 * 2.5e6);
   }
+  law_material_free(material);
+}
+END_TEST
+
+/* Small and large increments are found in two ways: which one a particle has does not depend on others. */
+START_TEST(increments_stand_alone) {
+  int32_t dim = loop_dim(_i);
+  mpm_material *material = law_material(loop_isa(_i), "linear_elastic", params, 3);
+  if (!material) return;
+  uint64_t state = 16;
+  sample s, r;
+  sample_clear(&s, dt);
+  sample_clear(&r, dt);
+  for (int i = 0; i < ITEMS; ++i) {
+    tensor small = increment(&state, dim, 1e-3L, i), large = increment(&state, dim, 0.9L, i);
+    tensor stress = random_stress(&state, dim, 1e-2L * p_modulus());
+    sample_set_increment(&s, i, small, identity());
+    sample_set_increment(&r, i, i % 16 == 5 ? large : small, identity());
+    sample_set_stress(&s, dim, i, stress);
+    sample_set_stress(&r, dim, i, stress);
+  }
+  sample_evaluate(&s, material, dim);
+  sample_evaluate(&r, material, dim);
+  for (int i = 0; i < ITEMS; ++i)
+    for (int c = 0; c < 6; ++c)
+      if (stress_exists(dim, c) && i % 16 != 5)
+        ck_assert_mem_eq(r.stress_new + c * LD + i, s.stress_new + c * LD + i, sizeof(double));
   law_material_free(material);
 }
 END_TEST
@@ -239,6 +266,7 @@ TCase *hypoelastic_case(void) {
   tcase_add_loop_test(tc, formula, 0, LAW_LOOPS);
   tcase_add_loop_test(tc, rotation_leaves_no_stress, 0, LAW_LOOPS);
   tcase_add_loop_test(tc, objectivity, 0, LAW_LOOPS);
+  tcase_add_loop_test(tc, increments_stand_alone, 0, LAW_LOOPS);
   tcase_add_loop_test(tc, uniaxial_strain_path, 0, LAW_LOOPS);
   tcase_add_loop_test(tc, full_turn, 0, LAW_LOOPS);
   tcase_add_loop_test(tc, no_time_no_change, 0, LAW_LOOPS);
