@@ -19,6 +19,8 @@ typedef struct mpmi_bound {
   double share;
   int32_t dim, records; /* records: impulses count as reactions */
   int32_t loads;        /* surfaces have given forces to the nodes */
+  const int32_t *met;   /* the ties that are taken, or NULL: all */
+  int64_t tie_count;    /* how many */
 } mpmi_bound;
 
 static inline const mpmi_constraints *mpmi_constraints_of(const mpmi_bound *bound) {
@@ -62,7 +64,12 @@ static inline mpmi_component mpmi_component_of(const mpmi_bound *bound, int64_t 
 }
 
 /* Notes the impulse of a boundary on a node, and by how much it changed the node's increment. */
-void mpmi_note_impulse(mpmi_bound *bound, int64_t slot, int32_t c, double impulse, double change);
+static inline void mpmi_note_impulse(mpmi_bound *bound, int64_t slot, int32_t c, double impulse,
+                                     double change) {
+  if (!bound->records) return;
+  bound->nodes->impulse[slot].given[c] += bound->share * impulse;
+  bound->nodes->impulse[slot].change[c] += bound->share * change;
+}
 /* Records how much more a free node now gives to particles, and returns it: the impulse. */
 double mpmi_record(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before);
 /* Returns the work of what has changed a component of a free node that goes with `velocity`. Mirror images go

@@ -1,12 +1,6 @@
 /* What boundary conditions give to the particles, recorded as impulses on nodes and ties. */
 #include "boundary/bound.h"
 
-void mpmi_note_impulse(mpmi_bound *bound, int64_t slot, int32_t c, double impulse, double change) {
-  if (!bound->records) return;
-  bound->nodes->impulse[slot].given[c] += bound->share * impulse;
-  bound->nodes->impulse[slot].change[c] += bound->share * change;
-}
-
 /* Records the impulse of a component that has changed. With whole, it counts on all mass of the tie, also on
  * images that move the other way. */
 static double record(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before, int32_t whole) {

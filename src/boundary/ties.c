@@ -3,6 +3,7 @@
 #include "boundary/bound.h"
 
 #include <float.h>
+#include <string.h>
 
 /* ---- the walk ----------------------------------------------------------------------------------------- */
 /* Ties share no node, so that they are shared out among tasks; waking these costs as much as some of them. */
@@ -16,17 +17,20 @@ typedef struct tie_job {
 
 static void take_share(void *data, int64_t k) {
   const tie_job *job = data;
-  const mpmi_share share =
-      mpmi_share_of(job->bound->step->settings, mpmi_constraints_of(job->bound)->tie_count, k);
+  const mpmi_share share = mpmi_share_of(job->bound->step->settings, job->bound->tie_count, k);
   job->fn(job->bound, share.begin, share.end);
+}
+
+/* Returns the number of the i-th tie that is taken. */
+static inline int64_t nth(const mpmi_bound *bound, int64_t i) {
+  return bound->met ? bound->met[i] : i;
 }
 
 static mpm_status over_ties(mpmi_bound *bound, tie_fn fn) {
   const mpmi_settings *settings = bound->step->settings;
-  const int64_t count = mpmi_constraints_of(bound)->tie_count;
   tie_job job = {bound, fn};
-  if (count >= FEW_TIES) return mpmi_run_tasks(settings, 0, settings->tasks, take_share, &job);
-  fn(bound, 0, count);
+  if (bound->tie_count >= FEW_TIES) return mpmi_run_tasks(settings, 0, settings->tasks, take_share, &job);
+  fn(bound, 0, bound->tie_count);
   return MPM_OK;
 }
 
@@ -35,8 +39,9 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   const int32_t both = mpmi_has_increments(bound->values);
   for (int64_t i = begin; i < end; ++i) {
-    const mpmi_tie *tie = &constraints->tie[i];
-    mpmi_tie_state *state = &bound->nodes->tie_state[i];
+    const int64_t at = nth(bound, i);
+    const mpmi_tie *tie = &constraints->tie[at];
+    mpmi_tie_state *state = &bound->nodes->tie_state[at];
     double *v = mpmi_velocity(bound->values, tie->master), *dv = mpmi_increment(bound->values, tie->master);
     const double mass = *mpmi_mass(bound->values, tie->master), cut = bound->step->layout->light_cut;
     double momentum[3], gained[3], apart[3] = {0.0, 0.0, 0.0}; /* apart: what light nodes have gained, no part
@@ -83,7 +88,22 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
   }
 }
 
+/* Chooses the ties that are taken, and gives the others states without mass. */
+static void choose(mpmi_bound *bound) {
+  const mpmi_layout *layout = bound->step->layout;
+  const mpmi_constraints *constraints = &layout->constraints;
+  mpmi_nodes *nodes = bound->nodes;
+  const int32_t leaves = mpmi_leaves_ties(layout, bound->step->settings);
+  bound->met = leaves ? constraints->met : NULL;
+  bound->tie_count = leaves ? constraints->met_count : constraints->tie_count;
+  if (!leaves || nodes->tie_states_of == layout->covers) return;
+  if (constraints->tie_count)
+    memset(nodes->tie_state, 0, (size_t)constraints->tie_count * sizeof *nodes->tie_state);
+  nodes->tie_states_of = layout->covers;
+}
+
 mpm_status mpmi_ties_fold(mpmi_bound *bound) {
+  choose(bound);
   return over_ties(bound, fold);
 }
 
@@ -93,7 +113,7 @@ mpm_status mpmi_ties_fold(mpmi_bound *bound) {
 static void hold(mpmi_bound *bound, int64_t begin, int64_t end) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   for (int64_t i = begin; i < end; ++i) {
-    const mpmi_tie *tie = &constraints->tie[i];
+    const mpmi_tie *tie = &constraints->tie[nth(bound, i)];
     for (int32_t c = 0; c < bound->dim; ++c) {
       if (!tie->zero[c] || mpmi_moved_by(bound->nodes, constraints, tie->master, c)) continue;
       mpmi_velocity(bound->values, tie->master)[c] = 0.0;
@@ -122,8 +142,9 @@ static double follow(mpmi_bound *bound, int64_t master, const mpmi_follower *fol
 static void unfold(mpmi_bound *bound, int64_t begin, int64_t end) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   for (int64_t i = begin; i < end; ++i) {
-    const mpmi_tie *tie = &constraints->tie[i];
-    mpmi_tie_state *state = &bound->nodes->tie_state[i];
+    const int64_t at = nth(bound, i);
+    const mpmi_tie *tie = &constraints->tie[at];
+    mpmi_tie_state *state = &bound->nodes->tie_state[at];
     for (int32_t c = 0; c < bound->dim; ++c) {
       double total =
           *mpmi_mass(bound->values, tie->master) * (mpmi_given(bound, tie->master, c) - state->before[c]);
@@ -139,13 +160,14 @@ static void unfold(mpmi_bound *bound, int64_t begin, int64_t end) {
 
 static void add_reactions(mpmi_bound *bound) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
-  for (int64_t i = 0; i < constraints->tie_count; ++i) {
-    const mpmi_tie *tie = &constraints->tie[i];
+  for (int64_t i = 0; i < bound->tie_count; ++i) {
+    const int64_t at = nth(bound, i);
+    const mpmi_tie *tie = &constraints->tie[at];
     if (!mpmi_owns_node(bound->step->layout->parts, tie->master)) continue;
     for (int32_t c = 0; c < bound->dim; ++c)
       if (tie->face[c] >= 0 && !mpmi_held_by(bound->nodes, tie->master, c))
         mpmi_exact_add(&bound->step->work->tally.sum[MPMI_TALLY_FACES + 3 * tie->face[c] + c],
-                       bound->share * bound->nodes->tie_state[i].recorded[c]);
+                       bound->share * bound->nodes->tie_state[at].recorded[c]);
   }
 }
 

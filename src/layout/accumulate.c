@@ -55,11 +55,13 @@ static void add_block(void *user, const mpmi_visit *visit) {
                 tile);
 }
 
-/* Tied nodes get values where no stencil is, and so may hosts and implicit steps give them. */
+/* Where all ties are taken, nodes get values that no stencil meets, and so may hosts and implicit steps give
+ * them. */
 static int32_t stays_zero_elsewhere(const mpmi_step *step, const mpmi_accumulation *sum) {
   const mpmi_settings *settings = step->settings;
-  return !sum->flags && !step->layout->constraints.tie_count && !settings->velocity_bc &&
-         !mpmi_has_hooks(settings) && !mpmi_is_implicit(settings);
+  const mpmi_layout *layout = step->layout;
+  return !sum->flags && (!layout->constraints.tie_count || mpmi_leaves_ties(layout, settings)) &&
+         !settings->velocity_bc && !mpmi_has_hooks(settings) && !mpmi_is_implicit(settings);
 }
 
 /* ---- with other parts ---------------------------------------------------------------------------------- */

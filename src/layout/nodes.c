@@ -46,6 +46,7 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   const int32_t projects =
       settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected || places;
   mpm_status status;
+  const int64_t had_ties = nodes->tie_capacity;
   const int32_t surfaces = mpmi_surfaces_prescribe(&settings->surfaces);
   nodes->has_holders =
       settings->velocity_bc || nodes->prescription.any || (surfaces && !mpmi_is_implicit(settings));
@@ -65,6 +66,7 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
       (status = MPMI_RESERVE_MORE(c, nodes->tie_state, nodes->tie_capacity, ties)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->contact_state, nodes->contact_capacity, contacts)))
     return status;
+  if (nodes->tie_capacity != had_ties || !mpmi_leaves_ties(layout, settings)) nodes->tie_states_of = -1;
   if (nodes->has_impulses && (status = MPMI_RESERVE_MORE(c, nodes->impulse, nodes->impulse_capacity, slots)))
     return status;
   if (mpmi_has_hooks(settings) &&
@@ -74,6 +76,13 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
       (status = MPMI_RESERVE_MORE(c, nodes->damping_impulse, nodes->damping_capacity, slots)))
     return status;
   return nodes->has_holders ? reserve_held(c, nodes, slots) : MPM_OK;
+}
+
+int32_t mpmi_leaves_ties(const mpmi_layout *layout, const mpmi_settings *settings) {
+  int32_t gives = settings->velocity_bc || mpmi_has_hooks(settings) || mpmi_is_implicit(settings) ||
+                  settings->surfaces.count > 0 || layout->parts;
+  for (int32_t m = 0; m < layout->member_count; ++m) gives |= layout->member[m].prescribed;
+  return !gives;
 }
 
 void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {

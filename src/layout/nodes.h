@@ -148,6 +148,8 @@ typedef struct mpmi_nodes {
   mpmi_leader *leader; /* of one light node after the other */
   int64_t leader_capacity;
   mpmi_tie_state *tie_state; /* [ties] */
+  /* The count of covers of the layout for which the states of ties that are left alone are 0, or -1. */
+  int64_t tie_states_of;
   int64_t tie_capacity;
   mpmi_contact_state *contact_state; /* [contacts] */
   int64_t contact_capacity;
@@ -164,6 +166,10 @@ static inline double mpmi_mass_moving(const mpmi_layout *layout, const mpmi_node
   const int32_t tie = layout->constraints.tie_of[slot];
   return tie < 0 ? *mpmi_mass(values, slot) : nodes->tie_state[tie].mass;
 }
+
+/* Returns 1 where ties that no stencil meets are left alone: they have no mass, and nobody gives their nodes
+ * a velocity or a force. */
+int32_t mpmi_leaves_ties(const mpmi_layout *layout, const mpmi_settings *settings);
 
 /* Returns 1 where obstacles want to know where the nodes of a total Lagrangian grid have come to. */
 static inline int32_t mpmi_places_nodes(const mpmi_settings *settings, const mpmi_nodes *nodes) {

@@ -122,6 +122,49 @@ static void reach_from(mpmi_blocks *b, int64_t block) {
   }
 }
 
+/* The box of nodes that are met in the block of a node, and the place of that node in the block. */
+typedef struct met_place {
+  mpmi_node_box *box;
+  int32_t at[3];
+} met_place;
+
+static met_place place_of(const mpmi_blocks *b, int64_t slot) {
+  const int32_t edge_y = b->grid->dim >= 2 ? b->edge : 1, n = (int32_t)(slot % b->nodes);
+  return (met_place){&b->reached[slot / b->nodes], {n / b->edge / edge_y, n / b->edge % edge_y, n % b->edge}};
+}
+
+static int32_t is_met(const mpmi_blocks *b, int64_t slot) {
+  const met_place p = place_of(b, slot);
+  int32_t met = 1;
+  for (int32_t k = 0; k < 3; ++k) met &= p.at[k] >= p.box->low[k] && p.at[k] < p.box->high[k];
+  return met;
+}
+
+static void meet(const mpmi_blocks *b, int64_t slot) {
+  const met_place p = place_of(b, slot);
+  for (int32_t k = 0; k < 3; ++k) {
+    if (p.at[k] < p.box->low[k]) p.box->low[k] = (uint8_t)p.at[k];
+    if (p.at[k] >= p.box->high[k]) p.box->high[k] = (uint8_t)(p.at[k] + 1);
+  }
+}
+
+/* Lists the ties of which a node is met, and then counts all their nodes among those that are: masters have
+ * what is given to followers, and the other way round. */
+static void meet_ties(const mpmi_blocks *b, mpmi_constraints *c) {
+  c->met_count = 0;
+  for (int64_t i = 0; i < c->tie_count; ++i) {
+    const mpmi_tie *tie = &c->tie[i];
+    int32_t met = is_met(b, tie->master);
+    for (int64_t d = 0; d < tie->count && !met; ++d) met = is_met(b, c->follower[tie->first + d].slot);
+    if (met) c->met[c->met_count++] = (int32_t)i;
+  }
+  for (int64_t i = 0; i < c->met_count; ++i) {
+    const mpmi_tie *tie = &c->tie[c->met[i]];
+    meet(b, tie->master);
+    for (int64_t d = 0; d < tie->count; ++d) meet(b, c->follower[tie->first + d].slot);
+  }
+}
+
 static mpmi_node_box whole_tile(const mpm_grid *grid) {
   mpmi_node_box box = {{0, 0, 0}, {1, 1, 1}};
   for (int32_t k = 0; k < grid->dim; ++k) box.high[k] = (uint8_t)MPMI_TILE_EDGE(grid->dim, grid->width);
@@ -141,6 +184,7 @@ void mpmi_layout_cover(mpmi_layout *layout) {
     b->cover[ghost].nodes = whole_tile(b->grid);
     reach_from(b, ghost);
   }
+  meet_ties(b, &layout->constraints);
   layout->cover_is_old = 0;
   ++layout->covers;
 }

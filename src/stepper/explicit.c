@@ -59,7 +59,7 @@ mpm_status mpmi_explicit_grid(mpmi_step *step, mpmi_nodes *nodes) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_node_update_stage(step, forces, nodes);
   if (!status) status = mpmi_boundary_stage(step, forces, nodes, 1.0);
-  if (!status && (step->layout->constraints.tie_count || step->layout->parts))
+  if (!status && step->layout->parts)
     step->info.active_nodes = mpmi_count_owned(step->layout, &nodes->solved);
   if (!status && step->layout->parts) step->layout->parts->has_counted = 1;
   mpmi_lap(step, MPMI_TIME_GRID, &clock);
