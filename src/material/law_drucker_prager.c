@@ -130,15 +130,20 @@ MPMI_INLINE void drucker_step(int dim, const drucker_constants *constants, const
   const mpmi_frame in = mpmi_frame_of(&c.elastic, batch);
   const double mu2 = 2.0 * c.elastic.mu, *old = batch->state;
   double *stress = batch->stress_new, *state = batch->state_new;
-  MPMI_IVDEP
-  for (int64_t i = 0; i < n; ++i) {
-    double J = mpmi_frame_J(dim, in, i), mean, inverse = 1.0 / J;
-    mpmi_sym e = mpmi_trial_strain(dim, in, i, J), d = mpmi_deviator(e, &mean);
-    double q = mu2 * sqrt(1.5 * mpmi_square(d));
-    drucker_return r = come_back(&c, trace_of(e), q, old[i], old[ld + i]);
-    mpmi_store_sym(dim, stress, ld, i, mpmi_shifted(mu2 * r.keep * inverse, d, -r.p * inverse));
-    state[i] = r.plastic;
-    state[ld + i] = r.gap;
+  for (int64_t begin = 0; begin < n; begin += MPMI_CHUNK) {
+    mpmi_trial_rows trial;
+    mpmi_find_trials(dim, in, begin, &trial);
+    MPMI_IVDEP
+    for (int p = 0; p < MPMI_CHUNK; ++p) {
+      const int64_t i = begin + p;
+      double mean, inverse = 1.0 / trial.J[p];
+      mpmi_sym e = mpmi_load_sym(dim, trial.strain[0], MPMI_CHUNK, p), d = mpmi_deviator(e, &mean);
+      double q = mu2 * sqrt(1.5 * mpmi_square(d));
+      drucker_return r = come_back(&c, trace_of(e), q, old[i], old[ld + i]);
+      mpmi_store_sym(dim, stress, ld, i, mpmi_shifted(mu2 * r.keep * inverse, d, -r.p * inverse));
+      state[i] = r.plastic;
+      state[ld + i] = r.gap;
+    }
   }
 }
 

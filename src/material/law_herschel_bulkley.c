@@ -118,12 +118,16 @@ MPMI_INLINE void flow_step(int dim, int32_t linear, const flow_constants *consta
   const mpmi_frame in = mpmi_frame_of(&c.elastic, batch);
   const double mu = c.elastic.mu, a = mpmi_max(mu * batch->dt, 1e-300), log_a = mpmi_lane_log(a);
   double *stress = batch->stress_new;
-  MPMI_IVDEP
-  for (int64_t i = 0; i < n; ++i) {
-    double J = mpmi_frame_J(dim, in, i), mean;
-    mpmi_sym d = mpmi_deviator(mpmi_trial_strain(dim, in, i, J), &mean);
-    flow_return r = come_back(linear, &c, a, log_a, mu * sqrt(2.0 * mpmi_square(d)));
-    mpmi_store_sym(dim, stress, ld, i, mpmi_shifted(2.0 * mu * r.keep / J, d, 0.0));
+  for (int64_t begin = 0; begin < n; begin += MPMI_CHUNK) {
+    mpmi_trial_rows trial;
+    mpmi_find_trials(dim, in, begin, &trial);
+    MPMI_IVDEP
+    for (int p = 0; p < MPMI_CHUNK; ++p) {
+      double mean;
+      mpmi_sym d = mpmi_deviator(mpmi_load_sym(dim, trial.strain[0], MPMI_CHUNK, p), &mean);
+      flow_return r = come_back(linear, &c, a, log_a, mu * sqrt(2.0 * mpmi_square(d)));
+      mpmi_store_sym(dim, stress, ld, begin + p, mpmi_shifted(2.0 * mu * r.keep / trial.J[p], d, 0.0));
+    }
   }
 }
 

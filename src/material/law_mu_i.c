@@ -79,14 +79,19 @@ MPMI_INLINE void grains_step(int dim, const grains_constants *constants, const m
   const mpmi_frame in = mpmi_frame_of(&c.elastic, batch);
   const double mu2 = 2.0 * c.elastic.mu, dt = batch->dt, *old = batch->state;
   double *stress = batch->stress_new, *state = batch->state_new;
-  MPMI_IVDEP
-  for (int64_t i = 0; i < n; ++i) {
-    double J = mpmi_frame_J(dim, in, i), mean, inverse = 1.0 / J;
-    mpmi_sym d = mpmi_deviator(mpmi_trial_strain(dim, in, i, J), &mean);
-    grains_return r = come_back(&c, dt, 3.0 * mean, mu2 * sqrt(0.5 * mpmi_square(d)), old[i], old[ld + i]);
-    mpmi_store_sym(dim, stress, ld, i, mpmi_shifted(mu2 * r.keep * inverse, d, -r.p * inverse));
-    state[i] = r.plastic;
-    state[ld + i] = r.gap;
+  for (int64_t begin = 0; begin < n; begin += MPMI_CHUNK) {
+    mpmi_trial_rows trial;
+    mpmi_find_trials(dim, in, begin, &trial);
+    MPMI_IVDEP
+    for (int p = 0; p < MPMI_CHUNK; ++p) {
+      const int64_t i = begin + p;
+      double mean, inverse = 1.0 / trial.J[p];
+      mpmi_sym d = mpmi_deviator(mpmi_load_sym(dim, trial.strain[0], MPMI_CHUNK, p), &mean);
+      grains_return r = come_back(&c, dt, 3.0 * mean, mu2 * sqrt(0.5 * mpmi_square(d)), old[i], old[ld + i]);
+      mpmi_store_sym(dim, stress, ld, i, mpmi_shifted(mu2 * r.keep * inverse, d, -r.p * inverse));
+      state[i] = r.plastic;
+      state[ld + i] = r.gap;
+    }
   }
 }
 

@@ -163,6 +163,13 @@ MPMI_INLINE mpmi_sym mpmi_selected(int32_t first, mpmi_sym a, mpmi_sym b) {
   return s;
 }
 
+MPMI_INLINE int32_t mpmi_has_larger(const double *size, double bound) {
+  mpmi_lanes largest = mpmi_lanes_load(size);
+  for (int p = MPMI_LANES; p < MPMI_CHUNK; p += MPMI_LANES)
+    largest = mpmi_lanes_max(largest, mpmi_lanes_load(size + p));
+  return mpmi_lanes_largest(largest) > bound;
+}
+
 /* Finds the increments of the chunk from particle `begin` on. Those of a step are mostly small; where one is
  * not, all are found both ways and each is taken by its own size, so that it does not depend on others. */
 MPMI_INLINE void mpmi_find_increments(int dim, mpmi_increments in, int64_t begin, mpmi_increment_rows *out) {
@@ -176,10 +183,7 @@ MPMI_INLINE void mpmi_find_increments(int dim, mpmi_increments in, int64_t begin
     mpmi_store_sym(dim, out->log_v[0], MPMI_CHUNK, p, o.log_v);
     mpmi_store_sym(dim, out->turned[0], MPMI_CHUNK, p, o.turned);
   }
-  mpmi_lanes largest = mpmi_lanes_load(size);
-  for (int p = MPMI_LANES; p < MPMI_CHUNK; p += MPMI_LANES)
-    largest = mpmi_lanes_max(largest, mpmi_lanes_load(size + p));
-  if (dim == 1 || !(mpmi_lanes_largest(largest) > small)) return;
+  if (dim == 1 || !mpmi_has_larger(size, small)) return;
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, begin + p, 0.0, in.dt);

@@ -175,8 +175,59 @@ MPMI_INLINE mpmi_sym mpmi_strain_of_b(int dim, mpmi_sym b) {
   return e;
 }
 
-MPMI_INLINE mpmi_sym mpmi_trial_strain(int dim, mpmi_frame in, int64_t i, double J) {
-  return mpmi_strain_of_b(dim, mpmi_trial_b(dim, in, i, J));
+/* Returns the trial strain if it is moderate, and the strain before the step, too: where *size is at most
+ * MPMI_MODERATE_SQUARE. In 2-D and 3-D alone. */
+MPMI_INLINE mpmi_sym mpmi_moderate_trial_strain(int dim, mpmi_frame in, int64_t i, double J, double *size) {
+  mpmi_old old = mpmi_old_state(dim, in.in, i, J);
+  double by_deviator = 2.0 * (old.J * in.c.by_deviator), by_mean = 2.0 * (old.J * in.c.by_mean * old.mean);
+  mpmi_sym twice = mpmi_shifted(by_deviator, old.deviator, by_mean);
+  mpmi_powers before = mpmi_powers_of(twice);
+  mpmi_sym b = mpmi_pushed_forward(dim, old.g, mpmi_moderate_exp_minus_1(twice, &before));
+  mpmi_powers now = mpmi_powers_of(b);
+  double is = now.square.xx + now.square.yy + now.square.zz;
+  double was = before.square.xx + before.square.yy + before.square.zz;
+  *size = mpmi_max(is, was);
+  return mpmi_moderate_log_stretch(b, &now);
+}
+
+/* det F at the end of the step and the trial strain of a chunk of particles. */
+typedef struct mpmi_trial_rows {
+  _Alignas(64) double J[MPMI_CHUNK], strain[6][MPMI_CHUNK];
+} mpmi_trial_rows;
+
+MPMI_INLINE void mpmi_find_any_trials(int dim, mpmi_frame in, int64_t begin, mpmi_trial_rows *out) {
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    mpmi_sym e = mpmi_strain_of_b(dim, mpmi_trial_b(dim, in, begin + p, out->J[p]));
+    mpmi_store_sym(dim, out->strain[0], MPMI_CHUNK, p, e);
+  }
+}
+
+/* Finds them for the chunk from particle `begin` on. Elastic strains are mostly moderate; where
+ * one is not, all are found both ways and each is taken by its own size, so that it does not
+ * depend on others. */
+MPMI_INLINE void mpmi_find_trials(int dim, mpmi_frame in, int64_t begin, mpmi_trial_rows *out) {
+  _Alignas(64) double size[MPMI_CHUNK];
+  mpmi_trial_rows any;
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) any.J[p] = out->J[p] = mpmi_frame_J(dim, in, begin + p);
+  if (dim == 1) {
+    mpmi_find_any_trials(dim, in, begin, out);
+    return;
+  }
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    mpmi_sym e = mpmi_moderate_trial_strain(dim, in, begin + p, out->J[p], &size[p]);
+    mpmi_store_sym(dim, out->strain[0], MPMI_CHUNK, p, e);
+  }
+  if (!mpmi_has_larger(size, MPMI_MODERATE_SQUARE)) return;
+  mpmi_find_any_trials(dim, in, begin, &any);
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    mpmi_sym e = mpmi_load_sym(dim, out->strain[0], MPMI_CHUNK, p);
+    mpmi_sym a = mpmi_load_sym(dim, any.strain[0], MPMI_CHUNK, p);
+    mpmi_store_sym(dim, out->strain[0], MPMI_CHUNK, p, mpmi_selected(size[p] <= MPMI_MODERATE_SQUARE, e, a));
+  }
 }
 
 /* Computes the squared speed of the fastest elastic wave, whose stiffness is bulk + 4/3 mu less the smallest

@@ -1,14 +1,17 @@
-/* ln V and V^-1 for V V = I + e of a small symmetric 3x3 tensor e, by power series: what isotropic_function.h
- * finds for any e from its eigenvalues, with neither roots nor divisions. Powers above the second follow from
+/* ln V and V^-1 for V V = I + e of a small symmetric 3x3 tensor e, and exp(e), by power series: what
+ * isotropic_function.h and principal_frame.h find for any e from its eigenvalues, with neither roots nor
+ * divisions. Powers above the second follow from
  * the lower ones by the theorem of Cayley and Hamilton, e^3 = tr(e) e^2 - II e + det(e) I. */
 #ifndef MPMI_SMALL_STRETCH_H
 #define MPMI_SMALL_STRETCH_H
 
 #include "simd/tensor.h"
 
-/* The largest sum of squares of an e that is small: 1/64^2. What the series leave out is then less than 2^-56
- * of their sums. */
-#define MPMI_SMALL_SQUARE 0x1p-12
+/* The largest sum of squares of an e that is small, 1/64^2: such are nearly all increments of steps. And that
+ * of one that is moderate, 1/8^2: such are elastic strains, but for those of rubber. What the series leave
+ * out is then less than 2^-54 of their sums. */
+#define MPMI_SMALL_SQUARE    0x1p-12
+#define MPMI_MODERATE_SQUARE 0x1p-6
 
 /* e^2, and the invariants tr(e), II = 1/2 (tr(e)^2 - tr(e^2)) and det(e). */
 typedef struct mpmi_powers {
@@ -47,9 +50,8 @@ MPMI_INLINE mpmi_sym mpmi_polynomial_at(mpmi_polynomial p, mpmi_sym e, mpmi_sym 
   return f;
 }
 
-/* ln V = 1/2 (e - e^2 / 2 + e^3 / 3 - ...), to the ninth power. */
-MPMI_INLINE mpmi_sym mpmi_small_log_stretch(mpmi_sym e, const mpmi_powers *of) {
-  mpmi_polynomial p = {1.0 / 14.0, -1.0 / 16.0, 1.0 / 18.0};
+/* ln V = 1/2 (e - e^2 / 2 + e^3 / 3 - ...): the terms below the seventh power, after p of the others. */
+MPMI_INLINE mpmi_sym mpmi_log_stretch_from(mpmi_polynomial p, mpmi_sym e, const mpmi_powers *of) {
   p = mpmi_times(p, -1.0 / 12.0, of);
   p = mpmi_times(p, 1.0 / 10.0, of);
   p = mpmi_times(p, -1.0 / 8.0, of);
@@ -59,7 +61,28 @@ MPMI_INLINE mpmi_sym mpmi_small_log_stretch(mpmi_sym e, const mpmi_powers *of) {
   return mpmi_polynomial_at(mpmi_times(p, 0.0, of), e, of->square);
 }
 
-/* V^-1 = I - e / 2 + 3 e^2 / 8 - ..., to the eighth power. */
+/* To the ninth power, of a small e. */
+MPMI_INLINE mpmi_sym mpmi_small_log_stretch(mpmi_sym e, const mpmi_powers *of) {
+  mpmi_polynomial p = {1.0 / 14.0, -1.0 / 16.0, 1.0 / 18.0};
+  return mpmi_log_stretch_from(p, e, of);
+}
+
+/* To the eighteenth, of a moderate one. */
+MPMI_INLINE mpmi_sym mpmi_moderate_log_stretch(mpmi_sym e, const mpmi_powers *of) {
+  mpmi_polynomial p = {-1.0 / 32.0, 1.0 / 34.0, -1.0 / 36.0};
+  p = mpmi_times(p, 1.0 / 30.0, of);
+  p = mpmi_times(p, -1.0 / 28.0, of);
+  p = mpmi_times(p, 1.0 / 26.0, of);
+  p = mpmi_times(p, -1.0 / 24.0, of);
+  p = mpmi_times(p, 1.0 / 22.0, of);
+  p = mpmi_times(p, -1.0 / 20.0, of);
+  p = mpmi_times(p, 1.0 / 18.0, of);
+  p = mpmi_times(p, -1.0 / 16.0, of);
+  p = mpmi_times(p, 1.0 / 14.0, of);
+  return mpmi_log_stretch_from(p, e, of);
+}
+
+/* V^-1 = I - e / 2 + 3 e^2 / 8 - ..., to the eighth power, of a small e. */
 MPMI_INLINE mpmi_sym mpmi_small_inverse_stretch(mpmi_sym e, const mpmi_powers *of) {
   mpmi_polynomial p = {231.0 / 1024.0, -429.0 / 2048.0, 6435.0 / 32768.0};
   p = mpmi_times(p, -63.0 / 256.0, of);
@@ -68,6 +91,19 @@ MPMI_INLINE mpmi_sym mpmi_small_inverse_stretch(mpmi_sym e, const mpmi_powers *o
   p = mpmi_times(p, 3.0 / 8.0, of);
   p = mpmi_times(p, -1.0 / 2.0, of);
   return mpmi_polynomial_at(mpmi_times(p, 1.0, of), e, of->square);
+}
+
+/* exp(e) - I = e + e^2 / 2 + e^3 / 6 + ..., to the tenth power, of a moderate e. */
+MPMI_INLINE mpmi_sym mpmi_moderate_exp_minus_1(mpmi_sym e, const mpmi_powers *of) {
+  mpmi_polynomial p = {1.0 / 40320.0, 1.0 / 362880.0, 1.0 / 3628800.0};
+  p = mpmi_times(p, 1.0 / 5040.0, of);
+  p = mpmi_times(p, 1.0 / 720.0, of);
+  p = mpmi_times(p, 1.0 / 120.0, of);
+  p = mpmi_times(p, 1.0 / 24.0, of);
+  p = mpmi_times(p, 1.0 / 6.0, of);
+  p = mpmi_times(p, 1.0 / 2.0, of);
+  p = mpmi_times(p, 1.0, of);
+  return mpmi_polynomial_at(mpmi_times(p, 0.0, of), e, of->square);
 }
 
 #endif

@@ -268,6 +268,7 @@ TCase *custom_material_case(void);
 TCase *hyperelastic_case(void);
 TCase *fluid_case(void);
 TCase *hypoelastic_case(void);
+TCase *hencky_case(void);
 TCase *j2_case(void);
 
 #endif

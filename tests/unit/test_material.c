@@ -445,6 +445,7 @@ Suite *material_suite(void) {
   suite_add_tcase(suite, hyperelastic_case());
   suite_add_tcase(suite, fluid_case());
   suite_add_tcase(suite, hypoelastic_case());
+  suite_add_tcase(suite, hencky_case());
   suite_add_tcase(suite, j2_case());
   return suite;
 }
