@@ -48,8 +48,8 @@ typedef struct mpmi_blocks {
   int32_t *body;                             /* [count] */
   int32_t (*coord)[3];                       /* [count] */
   int32_t (*neighbour)[MPMI_MAX_NEIGHBOURS]; /* [count], lowest corner first; MPMI_NO_BLOCK where absent */
-  /* Of blocks with particles, and of any block the box of its nodes that stencils meet; both are found before
-   * a step (layout/reached.c). */
+  /* Of blocks with particles, and of any block the box of its nodes that are met; both are found before a
+   * step (layout/reached.c). */
   mpmi_cover *cover;               /* [count] */
   mpmi_node_box *reached;          /* [count] */
   uint32_t *order, *order_scratch; /* [capacity] order: provisional -> final; else scratch */

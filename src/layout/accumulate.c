@@ -144,7 +144,7 @@ mpm_status mpmi_accumulate(mpmi_step *step, const mpmi_accumulation *sum) {
   const mpmi_settings *settings = step->settings;
   sum_job job = {step, sum, 0};
   mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, clear_task, &job);
-  sum->to->zero_elsewhere = stays_zero_elsewhere(step, sum) ? step->layout->covers : -1;
+  sum->to->zero_elsewhere = !status && stays_zero_elsewhere(step, sum) ? step->layout->covers : -1;
   if (step->layout->parts)
     status = add_with_others(&job, status);
   else if (!status)

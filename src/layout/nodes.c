@@ -26,6 +26,13 @@ static mpm_status reserve_held(mpm_context *c, mpmi_nodes *nodes, int64_t slots)
   return MPM_E_NOMEM;
 }
 
+static mpm_status reserve_ties(mpm_context *c, mpmi_nodes *nodes, int64_t ties) {
+  const int64_t had = nodes->tie_capacity;
+  const mpm_status status = MPMI_RESERVE_MORE(c, nodes->tie_state, nodes->tie_capacity, ties);
+  if (nodes->tie_capacity != had) nodes->tie_states_of = -1;
+  return status;
+}
+
 /* A whole step of a fused transfer needs no forces apart from the momentum. */
 static int32_t values_of_step(const mpmi_settings *settings, int32_t staged) {
   const int32_t fused =
@@ -46,7 +53,6 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   const int32_t projects =
       settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected || places;
   mpm_status status;
-  const int64_t had_ties = nodes->tie_capacity;
   const int32_t surfaces = mpmi_surfaces_prescribe(&settings->surfaces);
   nodes->has_holders =
       settings->velocity_bc || nodes->prescription.any || (surfaces && !mpmi_is_implicit(settings));
@@ -63,10 +69,10 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
                          : MPM_OK) ||
       (status = MPMI_RESERVE_MORE(c, nodes->light, nodes->light_capacity, light)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->leader, nodes->leader_capacity, 4 * light)) ||
-      (status = MPMI_RESERVE_MORE(c, nodes->tie_state, nodes->tie_capacity, ties)) ||
+      (status = reserve_ties(c, nodes, ties)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->contact_state, nodes->contact_capacity, contacts)))
     return status;
-  if (nodes->tie_capacity != had_ties || !mpmi_leaves_ties(layout, settings)) nodes->tie_states_of = -1;
+  if (!mpmi_leaves_ties(layout, settings)) nodes->tie_states_of = -1;
   if (nodes->has_impulses && (status = MPMI_RESERVE_MORE(c, nodes->impulse, nodes->impulse_capacity, slots)))
     return status;
   if (mpmi_has_hooks(settings) &&

@@ -13,7 +13,7 @@ typedef struct mpmi_nodal {
   double *at;
   int32_t values;
   int64_t capacity; /* in doubles */
-  /* The count of covers of the layout when all nodes that no stencil meets were 0, or -1: they must be
+  /* The count of covers of the layout when all nodes that are not met (reached.h) were 0, or -1: they must be
    * cleared. */
   int64_t zero_elsewhere;
 } mpmi_nodal;

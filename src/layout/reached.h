@@ -1,6 +1,6 @@
 /* Which nodes the particles of a block meet: those of its tile that their stencils may touch, and so which
- * nodes of the blocks around it. Blocks without particles are there for their neighbours' sake, and most of
- * their nodes are met by none: nothing is ever given to these. */
+ * nodes of the blocks around it; and with one node of a tie all of them. Blocks without particles are there
+ * for their neighbours' sake, and most of their nodes are met by none: nothing is ever given to these. */
 #ifndef MPMI_REACHED_H
 #define MPMI_REACHED_H
 

@@ -335,11 +335,17 @@ MPMI_INLINE void load(int dim, const clay_constants *c, mpmi_trial in, const dou
   invert(c, old);
 }
 
-/* Returns b_trial - I. */
-MPMI_INLINE mpmi_sym trial_b(int dim, const clay_constants *c, mpmi_trial in, int64_t i, double J, double X) {
-  mpmi_old before = mpmi_old_state(dim, in, i, J);
-  double v = c->kappa * mpmi_lane_log(X / c->p_ref), mu = c->mu + c->alpha * X;
-  return mpmi_trial_from(dim, before, (-1.0 / 3.0) * v, 0.5 * before.J / mu);
+/* Finds b of the trials, with X of the pressures before the step. */
+MPMI_INLINE void find_b(int dim, const clay_constants *c, mpmi_trial in, int64_t begin, const double *X,
+                        mpmi_trial_rows *out) {
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    double J = mpmi_trial_J(dim, in, begin + p), mu = c->mu + c->alpha * X[p];
+    out->J[p] = J;
+    out->volume[p] = (-1.0 / 3.0) * (c->kappa * mpmi_lane_log(X[p] / c->p_ref));
+    out->shape[p] = 0.5 * mpmi_old_state(dim, in, begin + p, J).J / mu;
+  }
+  mpmi_find_b(dim, in, begin, out);
 }
 
 /* Sets the trial from the volume strain and the size of the deviator. */
@@ -371,13 +377,15 @@ MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_
   _Alignas(64) double d[6][MPMI_CHUNK];
   clay_inverse old;
   clay o;
+  mpmi_trial_rows trial;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     load(dim, c, in, batch->state, i, &o, &old);
+    find_b(dim, c, in, i, old.X, &trial);
+    mpmi_find_strains(dim, &trial);
     MPMI_IVDEP
     for (int p = 0; p < MPMI_CHUNK; ++p) {
-      double J = mpmi_trial_J(dim, in, i + p), mean;
-      mpmi_sym e = mpmi_strain_of_b(dim, trial_b(dim, c, in, i + p, J, old.X[p]));
-      e = mpmi_deviator(e, &mean);
+      double mean;
+      mpmi_sym e = mpmi_deviator(mpmi_load_sym(dim, trial.strain[0], MPMI_CHUNK, p), &mean);
       mpmi_store_sym(dim, d[0], MPMI_CHUNK, p, e);
       set_trial(c, &o, p, 3.0 * mean, mpmi_square(e), batch->state[ld + i + p]);
     }
@@ -385,7 +393,7 @@ MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_
     MPMI_IVDEP
     for (int p = 0; p < MPMI_CHUNK; ++p) {
       const clay_stress t = stress_of(c, o.v[p], o.e[p]);
-      double inverse = 1.0 / mpmi_trial_J(dim, in, i + p), pressure = inverse * t.p;
+      double inverse = 1.0 / trial.J[p], pressure = inverse * t.p;
       double shape = inverse * shape_of(c, &o, p, t.shear);
       mpmi_sym s = mpmi_load_sym(dim, d[0], MPMI_CHUNK, p);
       mpmi_store_sym(dim, stress, ld, i + p, mpmi_shifted(shape, s, -pressure));
@@ -472,12 +480,14 @@ MPMI_INLINE void cam_clay_tangent(int dim, const clay_constants *c, const mpm_ma
   mpmi_principal to;
   clay_inverse old;
   clay o;
+  mpmi_trial_rows trial;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     load(dim, c, in, batch->state, i, &o, &old);
+    find_b(dim, c, in, i, old.X, &trial);
     MPMI_IVDEP
     for (int p = 0; p < MPMI_CHUNK; ++p) {
-      double J = mpmi_trial_J(dim, in, i + p), square = 0.0;
-      mpmi_principal_find(dim, &to, p, trial_b(dim, c, in, i + p, J, old.X[p]), J);
+      double square = 0.0;
+      mpmi_principal_find(dim, &to, p, mpmi_load_sym(dim, trial.b[0], MPMI_CHUNK, p), trial.J[p]);
       double volume = to.strain[0][p] + to.strain[1][p] + to.strain[2][p];
       for (int a = 0; a < 3; ++a) {
         n[a][p] = to.strain[a][p] - (1.0 / 3.0) * volume;

@@ -163,11 +163,12 @@ MPMI_INLINE mpmi_sym mpmi_selected(int32_t first, mpmi_sym a, mpmi_sym b) {
   return s;
 }
 
+/* Tells whether a size of a chunk is above a bound, or not a number. */
 MPMI_INLINE int32_t mpmi_has_larger(const double *size, double bound) {
-  mpmi_lanes largest = mpmi_lanes_load(size);
-  for (int p = MPMI_LANES; p < MPMI_CHUNK; p += MPMI_LANES)
-    largest = mpmi_lanes_max(largest, mpmi_lanes_load(size + p));
-  return mpmi_lanes_largest(largest) > bound;
+  uint32_t larger = 0;
+  for (int p = 0; p < MPMI_CHUNK; p += MPMI_LANES)
+    larger |= mpmi_lanes_any(~(mpmi_lanes_load(size + p) <= bound), 1);
+  return larger != 0;
 }
 
 /* Finds the increments of the chunk from particle `begin` on. Those of a step are mostly small; where one is

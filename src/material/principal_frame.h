@@ -5,7 +5,7 @@
  *
  * from which the law returns to its yield surface. All of it is in terms of b - I and F_inc - I, so that
  * small steps keep their digits. Most laws are linear in e (Hencky); one that is not finds e of
- * mpmi_old_state() by itself, and goes on with mpmi_trial_from(). */
+ * mpmi_old_state() by itself, and goes on with mpmi_find_b(). */
 #ifndef MPMI_PRINCIPAL_FRAME_H
 #define MPMI_PRINCIPAL_FRAME_H
 
@@ -30,7 +30,7 @@ static inline mpmi_hencky mpmi_hencky_of(const double *value) {
   return c;
 }
 
-/* ---- functions of a symmetric tensor ------------------------------------------------------------------ */
+/* ---- functions of a symmetric tensor ------------------------------------------------------------------- */
 /* Returns exp(2 e) - I. */
 MPMI_INLINE mpmi_sym mpmi_exp_twice_3d(mpmi_sym e) {
   mpmi_eigenvalue_nodes n = mpmi_eigenvalues(e);
@@ -101,7 +101,7 @@ MPMI_INLINE mpmi_sym mpmi_pushed_forward(int dim, mpmi_mat g, mpmi_sym b) {
   return c;
 }
 
-/* ---- the trial state and outputs ----------------------------------------------------------------------- */
+/* ---- before the step ----------------------------------------------------------------------------------- */
 /* Holds what the trial state needs. It is read before the loop, so that the compiler sees that no store
  * changes it. */
 typedef struct mpmi_trial {
@@ -135,11 +135,19 @@ MPMI_INLINE mpmi_old mpmi_old_state(int dim, mpmi_trial in, int64_t i, double J)
   return old;
 }
 
-/* Returns b_trial - I where the elastic strain before the step was volume * I + shape * deviator. */
-MPMI_INLINE mpmi_sym mpmi_trial_from(int dim, mpmi_old old, double volume, double shape) {
-  mpmi_sym e = mpmi_shifted(shape, old.deviator, volume);
-  return mpmi_pushed_forward(dim, old.g, mpmi_exp_twice(dim, e));
+/* > 0 where b - I can hold the elastic strain: stretches of 1e-5 to 1e4. A host's stress can leave that. */
+MPMI_INLINE double mpmi_elastic_range(mpmi_sym b) {
+  double least = mpmi_min(mpmi_min(b.xx, b.yy), b.zz), most = mpmi_max(mpmi_max(b.xx, b.yy), b.zz);
+  return mpmi_min(1e8 - most, least - (1e-10 - 1.0));
 }
+
+/* ---- the trials of a chunk ----------------------------------------------------------------------------- */
+/* The elastic strain before the step is volume * I + shape * deviator of the stress. J is det F at the end of
+ * the step, b the trial's b - I, strain its strain. */
+typedef struct mpmi_trial_rows {
+  _Alignas(64) double J[MPMI_CHUNK], volume[MPMI_CHUNK], shape[MPMI_CHUNK];
+  double b[6][MPMI_CHUNK], strain[6][MPMI_CHUNK];
+} mpmi_trial_rows;
 
 /* The frame of a law that is linear in e. */
 typedef struct mpmi_frame {
@@ -152,84 +160,76 @@ MPMI_INLINE mpmi_frame mpmi_frame_of(const mpmi_hencky *c, const mpm_material_ba
   return in;
 }
 
-MPMI_INLINE double mpmi_frame_J(int dim, mpmi_frame in, int64_t i) {
-  return mpmi_trial_J(dim, in.in, i);
-}
-
-/* Returns b_trial - I; J is det F at the end of the step. */
-MPMI_INLINE mpmi_sym mpmi_trial_b(int dim, mpmi_frame in, int64_t i, double J) {
-  mpmi_old old = mpmi_old_state(dim, in.in, i, J);
-  return mpmi_trial_from(dim, old, old.J * in.c.by_mean * old.mean, old.J * in.c.by_deviator);
-}
-
-/* > 0 where b - I can hold the elastic strain: stretches of 1e-5 to 1e4. A host's stress can leave that. */
-MPMI_INLINE double mpmi_elastic_range(mpmi_sym b) {
-  double least = mpmi_min(mpmi_min(b.xx, b.yy), b.zz), most = mpmi_max(mpmi_max(b.xx, b.yy), b.zz);
-  return mpmi_min(1e8 - most, least - (1e-10 - 1.0));
-}
-
-/* The strain of b - I; not a number outside of that range. */
-MPMI_INLINE mpmi_sym mpmi_strain_of_b(int dim, mpmi_sym b) {
-  mpmi_sym e = mpmi_half_log(dim, b);
-  e.xx = mpmi_elastic_range(b) > 0.0 ? e.xx : (double)NAN;
-  return e;
-}
-
-/* Returns the trial strain if it is moderate, and the strain before the step, too: where *size is at most
- * MPMI_MODERATE_SQUARE. In 2-D and 3-D alone. */
-MPMI_INLINE mpmi_sym mpmi_moderate_trial_strain(int dim, mpmi_frame in, int64_t i, double J, double *size) {
-  mpmi_old old = mpmi_old_state(dim, in.in, i, J);
-  double by_deviator = 2.0 * (old.J * in.c.by_deviator), by_mean = 2.0 * (old.J * in.c.by_mean * old.mean);
-  mpmi_sym twice = mpmi_shifted(by_deviator, old.deviator, by_mean);
-  mpmi_powers before = mpmi_powers_of(twice);
-  mpmi_sym b = mpmi_pushed_forward(dim, old.g, mpmi_moderate_exp_minus_1(twice, &before));
-  mpmi_powers now = mpmi_powers_of(b);
-  double is = now.square.xx + now.square.yy + now.square.zz;
-  double was = before.square.xx + before.square.yy + before.square.zz;
-  *size = mpmi_max(is, was);
-  return mpmi_moderate_log_stretch(b, &now);
-}
-
-/* det F at the end of the step and the trial strain of a chunk of particles. */
-typedef struct mpmi_trial_rows {
-  _Alignas(64) double J[MPMI_CHUNK], strain[6][MPMI_CHUNK];
-} mpmi_trial_rows;
-
-MPMI_INLINE void mpmi_find_any_trials(int dim, mpmi_frame in, int64_t begin, mpmi_trial_rows *out) {
+/* Sets what is before the step for such a law. */
+MPMI_INLINE void mpmi_start_trials(int dim, mpmi_frame in, int64_t begin, mpmi_trial_rows *out) {
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
-    mpmi_sym e = mpmi_strain_of_b(dim, mpmi_trial_b(dim, in, begin + p, out->J[p]));
-    mpmi_store_sym(dim, out->strain[0], MPMI_CHUNK, p, e);
+    double J = mpmi_trial_J(dim, in.in, begin + p);
+    mpmi_old old = mpmi_old_state(dim, in.in, begin + p, J);
+    out->J[p] = J;
+    out->volume[p] = old.J * in.c.by_mean * old.mean;
+    out->shape[p] = old.J * in.c.by_deviator;
   }
 }
 
-/* Finds them for the chunk from particle `begin` on. Elastic strains are mostly moderate; where
- * one is not, all are found both ways and each is taken by its own size, so that it does not
- * depend on others. */
-MPMI_INLINE void mpmi_find_trials(int dim, mpmi_frame in, int64_t begin, mpmi_trial_rows *out) {
+/* Returns twice the strain before the step. */
+MPMI_INLINE mpmi_sym mpmi_twice_before(const mpmi_trial_rows *of, int p, mpmi_sym deviator) {
+  return mpmi_shifted(2.0 * of->shape[p], deviator, 2.0 * of->volume[p]);
+}
+
+/* Finds b of the trials. Elastic strains are mostly moderate; where one is not, all are found both ways and
+ * each is taken by its own size, so that it does not depend on others. */
+MPMI_INLINE void mpmi_find_b(int dim, mpmi_trial in, int64_t begin, mpmi_trial_rows *out) {
   _Alignas(64) double size[MPMI_CHUNK];
-  mpmi_trial_rows any;
-  MPMI_IVDEP
-  for (int p = 0; p < MPMI_CHUNK; ++p) any.J[p] = out->J[p] = mpmi_frame_J(dim, in, begin + p);
-  if (dim == 1) {
-    mpmi_find_any_trials(dim, in, begin, out);
-    return;
-  }
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
-    mpmi_sym e = mpmi_moderate_trial_strain(dim, in, begin + p, out->J[p], &size[p]);
-    mpmi_store_sym(dim, out->strain[0], MPMI_CHUNK, p, e);
+    mpmi_old old = mpmi_old_state(dim, in, begin + p, out->J[p]);
+    mpmi_sym twice = mpmi_twice_before(out, p, old.deviator);
+    mpmi_powers of = mpmi_powers_of(twice);
+    size[p] = of.square.xx + of.square.yy + of.square.zz;
+    mpmi_sym b = mpmi_pushed_forward(dim, old.g, mpmi_moderate_exp_minus_1(twice, &of));
+    mpmi_store_sym(dim, out->b[0], MPMI_CHUNK, p, b);
   }
   if (!mpmi_has_larger(size, MPMI_MODERATE_SQUARE)) return;
-  mpmi_find_any_trials(dim, in, begin, &any);
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
-    mpmi_sym e = mpmi_load_sym(dim, out->strain[0], MPMI_CHUNK, p);
-    mpmi_sym a = mpmi_load_sym(dim, any.strain[0], MPMI_CHUNK, p);
-    mpmi_store_sym(dim, out->strain[0], MPMI_CHUNK, p, mpmi_selected(size[p] <= MPMI_MODERATE_SQUARE, e, a));
+    mpmi_old old = mpmi_old_state(dim, in, begin + p, out->J[p]);
+    mpmi_sym e = mpmi_shifted(out->shape[p], old.deviator, out->volume[p]);
+    mpmi_sym any = mpmi_pushed_forward(dim, old.g, mpmi_exp_twice(dim, e));
+    mpmi_sym b = mpmi_load_sym(dim, out->b[0], MPMI_CHUNK, p);
+    mpmi_store_sym(dim, out->b[0], MPMI_CHUNK, p, mpmi_selected(size[p] <= MPMI_MODERATE_SQUARE, b, any));
   }
 }
 
+/* Finds the strains of the trials from their b likewise; they are no numbers where b is out of range. */
+MPMI_INLINE void mpmi_find_strains(int dim, mpmi_trial_rows *out) {
+  _Alignas(64) double size[MPMI_CHUNK];
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    mpmi_sym b = mpmi_load_sym(dim, out->b[0], MPMI_CHUNK, p);
+    mpmi_powers of = mpmi_powers_of(b);
+    size[p] = of.square.xx + of.square.yy + of.square.zz;
+    mpmi_store_sym(dim, out->strain[0], MPMI_CHUNK, p, mpmi_moderate_log_stretch(b, &of));
+  }
+  if (!mpmi_has_larger(size, MPMI_MODERATE_SQUARE)) return;
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    mpmi_sym b = mpmi_load_sym(dim, out->b[0], MPMI_CHUNK, p), any = mpmi_half_log(dim, b);
+    mpmi_sym e = mpmi_load_sym(dim, out->strain[0], MPMI_CHUNK, p);
+    any.xx = mpmi_elastic_range(b) > 0.0 ? any.xx : (double)NAN;
+    mpmi_store_sym(dim, out->strain[0], MPMI_CHUNK, p,
+                   mpmi_selected(size[p] <= MPMI_MODERATE_SQUARE, e, any));
+  }
+}
+
+/* Does all that for a law that is linear in e. */
+MPMI_INLINE void mpmi_find_trials(int dim, mpmi_frame in, int64_t begin, mpmi_trial_rows *out) {
+  mpmi_start_trials(dim, in, begin, out);
+  mpmi_find_b(dim, in.in, begin, out);
+  mpmi_find_strains(dim, out);
+}
+
+/* ---- outputs ------------------------------------------------------------------------------------------- */
 /* Computes the squared speed of the fastest elastic wave, whose stiffness is bulk + 4/3 mu less the smallest
  * principal stress, which is at least -p - 2/3 q; and the energy of the elastic strain that belongs to
  * the stress. */

@@ -37,8 +37,8 @@ MPMI_INLINE double mpmi_min(double a, double b) {
   return a < b ? a : b;
 }
 
-/* 2 artanh(s) / s - 2 for z = s^2 < MPMI_LOG_SERIES_END: a minimax polynomial, of relative error 1.3e-18 with
- * the 2. */
+/* 2 artanh(s) / s - 2 for z = s^2 up to MPMI_LOG_SERIES_END: a minimax polynomial, of relative error 1.3e-18
+ * with the 2. */
 #define MPMI_LOG_SERIES_END 0.0295
 MPMI_INLINE double mpmi_log_series(double z) {
   const double w = z * z;

@@ -136,29 +136,32 @@ START_TEST(objectivity) {
 }
 END_TEST
 
-/* Small and large increments are found in two ways: which one a particle has does not depend on others. */
+/* Small and large increments are found in two ways: which one a particle has does not depend on others, also
+ * where one of these is no number. */
 START_TEST(increments_stand_alone) {
   int32_t dim = loop_dim(_i);
   mpm_material *material = law_material(loop_isa(_i), "linear_elastic", params, 3);
   if (!material) return;
+  static sample s[3]; /* of small increments; some large; and some that are none */
   uint64_t state = 16;
-  sample s, r;
-  sample_clear(&s, dt);
-  sample_clear(&r, dt);
+  for (int k = 0; k < 3; ++k) sample_clear(&s[k], dt);
   for (int i = 0; i < ITEMS; ++i) {
     tensor small = increment(&state, dim, 1e-3L, i), large = increment(&state, dim, 0.9L, i);
     tensor stress = random_stress(&state, dim, 1e-2L * p_modulus());
-    sample_set_increment(&s, i, small, identity());
-    sample_set_increment(&r, i, i % 16 == 5 ? large : small, identity());
-    sample_set_stress(&s, dim, i, stress);
-    sample_set_stress(&r, dim, i, stress);
+    for (int k = 0; k < 3; ++k) {
+      sample_set_increment(&s[k], i, k && i % 16 == 5 ? large : small, identity());
+      sample_set_stress(&s[k], dim, i, stress);
+    }
+    if (i % 16 < 2 || i % 16 == 8) s[2].L[i] = (double)NAN;
   }
-  sample_evaluate(&s, material, dim);
-  sample_evaluate(&r, material, dim);
+  for (int k = 0; k < 3; ++k) sample_evaluate(&s[k], material, dim);
   for (int i = 0; i < ITEMS; ++i)
-    for (int c = 0; c < 6; ++c)
-      if (stress_exists(dim, c) && i % 16 != 5)
-        ck_assert_mem_eq(r.stress_new + c * LD + i, s.stress_new + c * LD + i, sizeof(double));
+    for (int c = 0; c < 6; ++c) {
+      if (!stress_exists(dim, c) || i % 16 < 2 || i % 16 == 8) continue;
+      const int at = c * LD + i;
+      ck_assert_mem_eq(&s[2].stress_new[at], &s[1].stress_new[at], sizeof(double));
+      if (i % 16 != 5) ck_assert_mem_eq(&s[1].stress_new[at], &s[0].stress_new[at], sizeof(double));
+    }
   law_material_free(material);
 }
 END_TEST
