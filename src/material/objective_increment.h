@@ -96,15 +96,15 @@ MPMI_INLINE mpmi_sym mpmi_turned(mpmi_mat r, mpmi_sym s) {
 }
 
 /* What an increment is: ln V, and the stress turned with R. */
-typedef struct mpmi_increment {
+typedef struct mpmi_log_increment {
   mpmi_sym log_v, turned;
-} mpmi_increment;
+} mpmi_log_increment;
 
 /* Returns the increment of G if it is small: where *size is at most MPMI_SMALL_INCREMENT(dim). In 1-D all
  * are. */
 #define MPMI_SMALL_INCREMENT(dim) ((dim) == 3 ? MPMI_SMALL_SQUARE : MPMI_LOG_SERIES_END)
-MPMI_INLINE mpmi_increment mpmi_small_increment(int dim, mpmi_mat g, mpmi_sym stress, double *size) {
-  mpmi_increment o = {{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, stress};
+MPMI_INLINE mpmi_log_increment mpmi_small_increment(int dim, mpmi_mat g, mpmi_sym stress, double *size) {
+  mpmi_log_increment o = {{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, stress};
   if (dim == 3) {
     mpmi_sym e = mpmi_left_cauchy_green_minus_1(3, g);
     mpmi_powers of = mpmi_powers_of(e);
@@ -124,8 +124,8 @@ MPMI_INLINE mpmi_increment mpmi_small_increment(int dim, mpmi_mat g, mpmi_sym st
 }
 
 /* Returns it whatever its size; in 2-D and 3-D alone. */
-MPMI_INLINE mpmi_increment mpmi_any_increment(int dim, mpmi_mat g, mpmi_sym stress) {
-  mpmi_increment o;
+MPMI_INLINE mpmi_log_increment mpmi_any_increment(int dim, mpmi_mat g, mpmi_sym stress) {
+  mpmi_log_increment o;
   if (dim == 3) {
     mpmi_sym e = mpmi_left_cauchy_green_minus_1(3, g);
     mpmi_eigenvalue_nodes n = mpmi_eigenvalues(e);
@@ -179,7 +179,7 @@ MPMI_INLINE void mpmi_find_increments(int dim, mpmi_increments in, int64_t begin
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, begin + p, 0.0, in.dt);
-    mpmi_increment o =
+    mpmi_log_increment o =
         mpmi_small_increment(dim, g, mpmi_load_sym(dim, in.stress, in.ld, begin + p), &size[p]);
     mpmi_store_sym(dim, out->log_v[0], MPMI_CHUNK, p, o.log_v);
     mpmi_store_sym(dim, out->turned[0], MPMI_CHUNK, p, o.turned);
@@ -188,7 +188,7 @@ MPMI_INLINE void mpmi_find_increments(int dim, mpmi_increments in, int64_t begin
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, begin + p, 0.0, in.dt);
-    mpmi_increment o = mpmi_any_increment(dim, g, mpmi_load_sym(dim, in.stress, in.ld, begin + p));
+    mpmi_log_increment o = mpmi_any_increment(dim, g, mpmi_load_sym(dim, in.stress, in.ld, begin + p));
     mpmi_sym v = mpmi_load_sym(dim, out->log_v[0], MPMI_CHUNK, p);
     mpmi_sym s = mpmi_load_sym(dim, out->turned[0], MPMI_CHUNK, p);
     mpmi_store_sym(dim, out->log_v[0], MPMI_CHUNK, p, mpmi_selected(size[p] <= small, v, o.log_v));
