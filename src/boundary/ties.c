@@ -91,15 +91,14 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
 /* Chooses the ties that are taken, and gives the others states without mass. */
 static void choose(mpmi_bound *bound) {
   const mpmi_layout *layout = bound->step->layout;
-  const mpmi_constraints *constraints = &layout->constraints;
+  const int64_t ties = layout->constraints.tie_count;
   mpmi_nodes *nodes = bound->nodes;
   const int32_t leaves = mpmi_leaves_ties(layout, bound->step->settings);
-  bound->met = leaves ? constraints->met : NULL;
-  bound->tie_count = leaves ? constraints->met_count : constraints->tie_count;
-  if (!leaves || nodes->tie_states_of == layout->covers) return;
-  if (constraints->tie_count)
-    memset(nodes->tie_state, 0, (size_t)constraints->tie_count * sizeof *nodes->tie_state);
-  nodes->tie_states_of = layout->covers;
+  bound->met = leaves ? layout->met : NULL;
+  bound->tie_count = leaves ? layout->met_count : ties;
+  if (leaves && ties && nodes->tie_states_of != layout->covers)
+    memset(nodes->tie_state, 0, (size_t)ties * sizeof *nodes->tie_state);
+  nodes->tie_states_of = leaves ? layout->covers : -1;
 }
 
 mpm_status mpmi_ties_fold(mpmi_bound *bound) {

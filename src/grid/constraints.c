@@ -11,7 +11,6 @@ void mpmi_constraints_free(mpmi_constraints *c) {
   mpm_context *context = c->context;
   MPMI_FREE_ARRAY(context, c->tie, c->tie_capacity);
   MPMI_FREE_ARRAY(context, c->follower, c->follower_capacity);
-  MPMI_FREE_ARRAY(context, c->met, c->met_capacity);
   MPMI_FREE_ARRAY(context, c->contact, c->contact_capacity);
   MPMI_FREE_ARRAY(context, c->tie_of, c->map_capacity);
   mpmi_constraints_init(c, context);
@@ -230,15 +229,13 @@ mpm_status mpmi_constraints_build(mpmi_constraints *c, const mpmi_blocks *b, con
   clear_map(c, b);
   visit_all(&w, VISIT_LINEAR, 0);
   if ((status = MPMI_RESERVE_MORE(context, c->tie, c->tie_capacity, w.ties)) ||
-      (status = MPMI_RESERVE_MORE(context, c->follower, c->follower_capacity, w.followers)) ||
-      (status = MPMI_RESERVE_MORE(context, c->met, c->met_capacity, w.ties)))
+      (status = MPMI_RESERVE_MORE(context, c->follower, c->follower_capacity, w.followers)))
     return status;
   clear_map(c, b);
   w = (walk){b, wall, c, 1, 0, 0, 0};
   visit_all(&w, VISIT_LINEAR, 0);
   c->tie_count = w.ties;
   c->follower_count = w.followers;
-  c->met_count = 0;
   int64_t first = 0;
   for (int64_t i = 0; i < c->tie_count; ++i) {
     c->tie[i].first = first;

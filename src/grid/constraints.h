@@ -44,8 +44,6 @@ typedef struct mpmi_constraints {
   mpmi_tie *tie;
   int64_t follower_count, follower_capacity;
   mpmi_follower *follower;
-  int64_t met_count, met_capacity;
-  int32_t *met; /* the ties of which stencils meet a node, in order; found before a step (layout/reached.c) */
   int64_t contact_count, contact_capacity;
   mpmi_contact *contact; /* ordered by face */
   int64_t map_capacity;

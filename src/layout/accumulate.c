@@ -55,13 +55,12 @@ static void add_block(void *user, const mpmi_visit *visit) {
                 tile);
 }
 
-/* Where all ties are taken, nodes get values that no stencil meets, and so may hosts and implicit steps give
- * them. */
+/* Where all ties are taken, nodes get values that no stencil meets. */
 static int32_t stays_zero_elsewhere(const mpmi_step *step, const mpmi_accumulation *sum) {
   const mpmi_settings *settings = step->settings;
   const mpmi_layout *layout = step->layout;
-  return !sum->flags && (!layout->constraints.tie_count || mpmi_leaves_ties(layout, settings)) &&
-         !settings->velocity_bc && !mpmi_has_hooks(settings) && !mpmi_is_implicit(settings);
+  return !sum->flags && !mpmi_gives_anywhere(settings) &&
+         (!layout->constraints.tie_count || mpmi_leaves_ties(layout, settings));
 }
 
 /* ---- with other parts ---------------------------------------------------------------------------------- */

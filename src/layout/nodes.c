@@ -72,7 +72,6 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
       (status = reserve_ties(c, nodes, ties)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->contact_state, nodes->contact_capacity, contacts)))
     return status;
-  if (!mpmi_leaves_ties(layout, settings)) nodes->tie_states_of = -1;
   if (nodes->has_impulses && (status = MPMI_RESERVE_MORE(c, nodes->impulse, nodes->impulse_capacity, slots)))
     return status;
   if (mpmi_has_hooks(settings) &&
@@ -85,8 +84,7 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
 }
 
 int32_t mpmi_leaves_ties(const mpmi_layout *layout, const mpmi_settings *settings) {
-  int32_t gives = settings->velocity_bc || mpmi_has_hooks(settings) || mpmi_is_implicit(settings) ||
-                  settings->surfaces.count > 0 || layout->parts;
+  int32_t gives = mpmi_gives_anywhere(settings) || settings->surfaces.count > 0 || layout->parts;
   for (int32_t m = 0; m < layout->member_count; ++m) gives |= layout->member[m].prescribed;
   return !gives;
 }

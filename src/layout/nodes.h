@@ -148,9 +148,8 @@ typedef struct mpmi_nodes {
   mpmi_leader *leader; /* of one light node after the other */
   int64_t leader_capacity;
   mpmi_tie_state *tie_state; /* [ties] */
-  /* The count of covers of the layout for which the states of ties that are left alone are 0, or -1. */
-  int64_t tie_states_of;
   int64_t tie_capacity;
+  int64_t tie_states_of; /* the count of covers for which states of ties that are left alone are 0, or -1 */
   mpmi_contact_state *contact_state; /* [contacts] */
   int64_t contact_capacity;
   mpmi_prescription prescription;
@@ -167,6 +166,10 @@ static inline double mpmi_mass_moving(const mpmi_layout *layout, const mpmi_node
   return tie < 0 ? *mpmi_mass(values, slot) : nodes->tie_state[tie].mass;
 }
 
+/* Returns 1 where nodes may be given values that no stencil meets: by the host, or by implicit steps. */
+static inline int32_t mpmi_gives_anywhere(const mpmi_settings *settings) {
+  return settings->velocity_bc || mpmi_has_hooks(settings) || mpmi_is_implicit(settings);
+}
 /* Returns 1 where ties that no stencil meets are left alone: they have no mass, and nobody gives their nodes
  * a velocity or a force. */
 int32_t mpmi_leaves_ties(const mpmi_layout *layout, const mpmi_settings *settings);

@@ -150,16 +150,18 @@ static void meet(const mpmi_blocks *b, int64_t slot) {
 
 /* Lists the ties of which a node is met, and then counts all their nodes among those that are: masters have
  * what is given to followers, and the other way round. */
-static void meet_ties(const mpmi_blocks *b, mpmi_constraints *c) {
-  c->met_count = 0;
+static void meet_ties(mpmi_layout *layout) {
+  const mpmi_blocks *b = &layout->blocks;
+  const mpmi_constraints *c = &layout->constraints;
+  layout->met_count = 0;
   for (int64_t i = 0; i < c->tie_count; ++i) {
     const mpmi_tie *tie = &c->tie[i];
     int32_t met = is_met(b, tie->master);
     for (int64_t d = 0; d < tie->count && !met; ++d) met = is_met(b, c->follower[tie->first + d].slot);
-    if (met) c->met[c->met_count++] = (int32_t)i;
+    if (met) layout->met[layout->met_count++] = (int32_t)i;
   }
-  for (int64_t i = 0; i < c->met_count; ++i) {
-    const mpmi_tie *tie = &c->tie[c->met[i]];
+  for (int64_t i = 0; i < layout->met_count; ++i) {
+    const mpmi_tie *tie = &c->tie[layout->met[i]];
     meet(b, tie->master);
     for (int64_t d = 0; d < tie->count; ++d) meet(b, c->follower[tie->first + d].slot);
   }
@@ -171,9 +173,12 @@ static mpmi_node_box whole_tile(const mpm_grid *grid) {
   return box;
 }
 
-void mpmi_layout_cover(mpmi_layout *layout) {
+mpm_status mpmi_layout_cover(mpmi_layout *layout) {
   mpmi_blocks *b = &layout->blocks;
   const mpmi_worklist *list = &layout->worklist[0];
+  const mpm_status status =
+      MPMI_RESERVE_MORE(b->context, layout->met, layout->met_capacity, layout->constraints.tie_count);
+  if (status) return status;
   for (int64_t i = 0; i < b->count; ++i) b->reached[i] = (mpmi_node_box){{255, 255, 255}, {0, 0, 0}};
   for (int64_t i = 0; i < list->count; ++i) {
     find_cover(layout, list->block[i]);
@@ -184,9 +189,10 @@ void mpmi_layout_cover(mpmi_layout *layout) {
     b->cover[ghost].nodes = whole_tile(b->grid);
     reach_from(b, ghost);
   }
-  meet_ties(b, &layout->constraints);
+  meet_ties(layout);
   layout->cover_is_old = 0;
   ++layout->covers;
+  return MPM_OK;
 }
 
 void mpmi_reached_runs(const mpmi_blocks *b, int64_t begin, int64_t end, mpmi_run_fn fn, void *user) {

@@ -20,10 +20,10 @@ mpmi_spans mpmi_spans_of(const mpmi_blocks *b, int64_t block);
 /* The same for wider stencils about the same anchors, in a tile of their width. */
 mpmi_spans mpmi_spans_of_stencil(const mpmi_blocks *b, int64_t block, int32_t width, int32_t below);
 
-/* Finds where the particles of each block are, and which nodes and ties they meet. A particle may drift so
- * far, in cells, before that is found anew. */
+/* Finds where the particles of each block are, and which nodes and ties they meet; that takes room for a list
+ * of ties. A particle may drift so far, in cells, before it is found anew. */
 #define MPMI_COVER_DRIFT 0.5
-void mpmi_layout_cover(mpmi_layout *layout);
+mpm_status mpmi_layout_cover(mpmi_layout *layout);
 /* Sets the bounds of a block's whole tile: beyond them all particles are sorted anew. */
 void mpmi_tile_bounds(const mpmi_blocks *b, int64_t block, double *centre, double *half);
 

@@ -49,6 +49,7 @@ void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {
   mpmi_blocks_free(&layout->next_blocks);
   mpmi_constraints_free(&layout->constraints);
   mpmi_constraints_free(&layout->next_constraints);
+  MPMI_FREE_ARRAY(c, layout->met, layout->met_capacity);
   MPMI_FREE_ARRAY(c, layout->groups.group, layout->groups.capacity);
   MPMI_FREE_ARRAY(c, layout->next_groups.group, layout->next_groups.capacity);
   MPMI_FREE_ARRAY(c, layout->list_memory, layout->list_capacity);

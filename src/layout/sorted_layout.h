@@ -43,6 +43,8 @@ typedef struct mpmi_layout {
   mpmi_member *member;
   mpmi_blocks blocks, next_blocks;
   mpmi_constraints constraints, next_constraints;
+  int64_t met_count, met_capacity;
+  int32_t *met; /* the ties of which stencils meet a node, in order; found with the cover */
   mpmi_worklist worklist[MPMI_WORKLISTS];  /* all blocks with particles, then by colour */
   int32_t *list_memory, *next_list_memory; /* memory of all worklists, and of those that are being made */
   int64_t list_capacity, next_list_capacity;

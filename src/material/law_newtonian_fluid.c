@@ -58,11 +58,18 @@ MPMI_INLINE void add_deviator(int dim, double factor, mpmi_sym of, double *stres
   mpmi_store_sym(dim, stress, ld, i, s);
 }
 
+/* The viscous stress does not depend on the old one. */
+MPMI_INLINE mpmi_increments strain_increments(const mpm_material_batch *batch) {
+  mpmi_increments in = mpmi_increments_of(batch);
+  in.turns = 0;
+  return in;
+}
+
 /* Adds the viscous stress of the step. */
 MPMI_INLINE void add_shear(int dim, const fluid_constants *c, const mpm_material_batch *batch) {
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double factor = 2.0 * c->viscosity / batch->dt;
-  const mpmi_increments in = mpmi_increments_of(batch);
+  const mpmi_increments in = strain_increments(batch);
   double *stress = batch->stress_new;
   for (int64_t begin = 0; begin < n; begin += MPMI_CHUNK) {
     mpmi_increment_rows of;
@@ -112,7 +119,7 @@ MPMI_INLINE void compression_tangent(int dim, const fluid_constants *c, const mp
 MPMI_INLINE void shear_chunk(int dim, const fluid_constants *c, const mpm_material_batch *batch,
                              int64_t begin, mpmi_objective *o) {
   const double shear = c->viscosity / batch->dt;
-  mpmi_objective_load(dim, o, batch, begin);
+  mpmi_objective_load(dim, o, batch, strain_increments(batch), begin);
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     double mean_log;
@@ -127,9 +134,9 @@ MPMI_INLINE void add_shear_tangent(int dim, const fluid_constants *c, const mpm_
                                    double *tangent) {
   mpmi_objective o;
   memset(o.bend, 0, sizeof o.bend);
+  memset(o.of.turned, 0, sizeof o.of.turned);
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     shear_chunk(dim, c, batch, i, &o);
-    memset(o.of.turned, 0, sizeof o.of.turned); /* the viscous stress does not depend on the old stress */
     KERNEL(objective_rows)(dim, 1, &o, tangent + i, batch->ld);
   }
 }

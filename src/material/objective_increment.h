@@ -10,7 +10,7 @@
 
 #include "material/elastic_constants.h"
 #include "material/isotropic_function.h"
-#include "material/small_stretch.h"
+#include "material/isotropic_series.h"
 #include "simd/lanes.h"
 #include "simd/tensor.h"
 #include "simd/vector_math.h"
@@ -141,16 +141,24 @@ MPMI_INLINE mpmi_log_increment mpmi_any_increment(int dim, mpmi_mat g, mpmi_sym 
 }
 
 /* ---- the increments of a chunk ------------------------------------------------------------------------ */
-/* What they are made of. It is read before the loops, so that the compiler sees that no store changes it. */
+/* What they are made of. It is read before the loops, so that the compiler sees that no store changes it. The
+ * stress is turned where that is asked for. */
 typedef struct mpmi_increments {
   const double *L, *stress;
   int64_t ld;
   double dt;
+  int turns;
 } mpmi_increments;
 
 MPMI_INLINE mpmi_increments mpmi_increments_of(const mpm_material_batch *batch) {
-  mpmi_increments in = {batch->L, batch->stress, batch->ld, batch->dt};
+  mpmi_increments in = {batch->L, batch->stress, batch->ld, batch->dt, 1};
   return in;
+}
+
+/* Returns the stress that particle i brings to its increment. */
+MPMI_INLINE mpmi_sym mpmi_stress_before(int dim, mpmi_increments in, int64_t i) {
+  mpmi_sym none = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  return in.turns ? mpmi_load_sym(dim, in.stress, in.ld, i) : none;
 }
 
 typedef struct mpmi_increment_rows {
@@ -179,19 +187,19 @@ MPMI_INLINE void mpmi_find_increments(int dim, mpmi_increments in, int64_t begin
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, begin + p, 0.0, in.dt);
-    mpmi_log_increment o =
-        mpmi_small_increment(dim, g, mpmi_load_sym(dim, in.stress, in.ld, begin + p), &size[p]);
+    mpmi_log_increment o = mpmi_small_increment(dim, g, mpmi_stress_before(dim, in, begin + p), &size[p]);
     mpmi_store_sym(dim, out->log_v[0], MPMI_CHUNK, p, o.log_v);
-    mpmi_store_sym(dim, out->turned[0], MPMI_CHUNK, p, o.turned);
+    if (in.turns) mpmi_store_sym(dim, out->turned[0], MPMI_CHUNK, p, o.turned);
   }
   if (dim == 1 || !mpmi_has_larger(size, small)) return;
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, begin + p, 0.0, in.dt);
-    mpmi_log_increment o = mpmi_any_increment(dim, g, mpmi_load_sym(dim, in.stress, in.ld, begin + p));
+    mpmi_log_increment o = mpmi_any_increment(dim, g, mpmi_stress_before(dim, in, begin + p));
     mpmi_sym v = mpmi_load_sym(dim, out->log_v[0], MPMI_CHUNK, p);
-    mpmi_sym s = mpmi_load_sym(dim, out->turned[0], MPMI_CHUNK, p);
     mpmi_store_sym(dim, out->log_v[0], MPMI_CHUNK, p, mpmi_selected(size[p] <= small, v, o.log_v));
+    if (!in.turns) continue;
+    mpmi_sym s = mpmi_load_sym(dim, out->turned[0], MPMI_CHUNK, p);
     mpmi_store_sym(dim, out->turned[0], MPMI_CHUNK, p, mpmi_selected(size[p] <= small, s, o.turned));
   }
 }

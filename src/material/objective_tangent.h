@@ -19,8 +19,8 @@ typedef struct mpmi_objective {
 
 /* Loads what all of these laws need of the chunk from particle `begin` on. */
 MPMI_INLINE void mpmi_objective_load(int dim, mpmi_objective *o, const mpm_material_batch *batch,
-                                     int64_t begin) {
-  mpmi_find_increments(dim, mpmi_increments_of(batch), begin, &o->of);
+                                     mpmi_increments in, int64_t begin) {
+  mpmi_find_increments(dim, in, begin, &o->of);
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_spins spins = mpmi_spins_of(dim, mpmi_load_sym(dim, o->of.log_v[0], MPMI_CHUNK, p));
@@ -35,7 +35,7 @@ MPMI_INLINE void mpmi_objective_load(int dim, mpmi_objective *o, const mpm_mater
 MPMI_INLINE void mpmi_elastic_chunk(int dim, const mpmi_elastic *c, const mpm_material_batch *batch,
                                     int64_t begin, mpmi_objective *o) {
   const double mu = c->mu, bulk = c->lambda + (2.0 / 3.0) * mu;
-  mpmi_objective_load(dim, o, batch, begin);
+  mpmi_objective_load(dim, o, batch, mpmi_increments_of(batch), begin);
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_store_sym(dim, o->stress[0], MPMI_CHUNK, p,

@@ -156,25 +156,20 @@ typedef struct mpmi_frame {
 } mpmi_frame;
 
 MPMI_INLINE mpmi_frame mpmi_frame_of(const mpmi_hencky *c, const mpm_material_batch *batch) {
-  mpmi_frame in = {*c, mpmi_trial_of(batch)};
-  return in;
+  mpmi_frame frame = {*c, mpmi_trial_of(batch)};
+  return frame;
 }
 
 /* Sets what is before the step for such a law. */
-MPMI_INLINE void mpmi_start_trials(int dim, mpmi_frame in, int64_t begin, mpmi_trial_rows *out) {
+MPMI_INLINE void mpmi_start_trials(int dim, mpmi_frame frame, int64_t begin, mpmi_trial_rows *out) {
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
-    double J = mpmi_trial_J(dim, in.in, begin + p);
-    mpmi_old old = mpmi_old_state(dim, in.in, begin + p, J);
+    double J = mpmi_trial_J(dim, frame.in, begin + p);
+    mpmi_old old = mpmi_old_state(dim, frame.in, begin + p, J);
     out->J[p] = J;
-    out->volume[p] = old.J * in.c.by_mean * old.mean;
-    out->shape[p] = old.J * in.c.by_deviator;
+    out->volume[p] = old.J * frame.c.by_mean * old.mean;
+    out->shape[p] = old.J * frame.c.by_deviator;
   }
-}
-
-/* Returns twice the strain before the step. */
-MPMI_INLINE mpmi_sym mpmi_twice_before(const mpmi_trial_rows *of, int p, mpmi_sym deviator) {
-  return mpmi_shifted(2.0 * of->shape[p], deviator, 2.0 * of->volume[p]);
 }
 
 /* Finds b of the trials. Elastic strains are mostly moderate; where one is not, all are found both ways and
@@ -184,7 +179,7 @@ MPMI_INLINE void mpmi_find_b(int dim, mpmi_trial in, int64_t begin, mpmi_trial_r
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_old old = mpmi_old_state(dim, in, begin + p, out->J[p]);
-    mpmi_sym twice = mpmi_twice_before(out, p, old.deviator);
+    mpmi_sym twice = mpmi_shifted(2.0 * out->shape[p], old.deviator, 2.0 * out->volume[p]);
     mpmi_powers of = mpmi_powers_of(twice);
     size[p] = of.square.xx + of.square.yy + of.square.zz;
     mpmi_sym b = mpmi_pushed_forward(dim, old.g, mpmi_moderate_exp_minus_1(twice, &of));
@@ -223,9 +218,9 @@ MPMI_INLINE void mpmi_find_strains(int dim, mpmi_trial_rows *out) {
 }
 
 /* Does all that for a law that is linear in e. */
-MPMI_INLINE void mpmi_find_trials(int dim, mpmi_frame in, int64_t begin, mpmi_trial_rows *out) {
-  mpmi_start_trials(dim, in, begin, out);
-  mpmi_find_b(dim, in.in, begin, out);
+MPMI_INLINE void mpmi_find_trials(int dim, mpmi_frame frame, int64_t begin, mpmi_trial_rows *out) {
+  mpmi_start_trials(dim, frame, begin, out);
+  mpmi_find_b(dim, frame.in, begin, out);
   mpmi_find_strains(dim, out);
 }
 

@@ -39,10 +39,10 @@ MPMI_INLINE void mpmi_principal_find(int dim, mpmi_principal *o, int p, mpmi_sym
 }
 
 /* Does so for a chunk of a law that is linear in the strain. */
-MPMI_INLINE void mpmi_principal_load(int dim, mpmi_principal *o, mpmi_frame in, int64_t begin) {
+MPMI_INLINE void mpmi_principal_load(int dim, mpmi_principal *o, mpmi_frame frame, int64_t begin) {
   mpmi_trial_rows trial;
-  mpmi_start_trials(dim, in, begin, &trial);
-  mpmi_find_b(dim, in.in, begin, &trial);
+  mpmi_start_trials(dim, frame, begin, &trial);
+  mpmi_find_b(dim, frame.in, begin, &trial);
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p)
     mpmi_principal_find(dim, o, p, mpmi_load_sym(dim, trial.b[0], MPMI_CHUNK, p), trial.J[p]);

@@ -103,8 +103,8 @@ static mpm_status prepare(mpm_stepper *s) {
   if (status) return status;
   s->nodes.shown = -1;
   if ((status = mpmi_layout_prepare(&s->layout, settings))) return status;
-  if (s->layout.cover_is_old) mpmi_layout_cover(&s->layout);
-  if ((status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
+  if ((status = s->layout.cover_is_old ? mpmi_layout_cover(&s->layout) : MPM_OK) ||
+      (status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
       (status = mpmi_workspace_prepare(&s->work, settings, &s->layout)) ||
       (status = mpmi_contact_prepare(&s->layout, settings, &s->nodes.contact, &s->history.pairs)) ||
       (status =

@@ -138,36 +138,48 @@ START_TEST(even_nodes_take_what_all_do) {
 }
 END_TEST
 
+/* Gathers from a tile what the particles of a scatter take: v, dv, L and C in rows of `taken`. */
+static void gather_into(const mpmi_scatter *of, const mpmi_kernels *kernels, int32_t dim, int32_t width,
+                        int32_t form, int32_t need, const double *volume, const double *tile,
+                        double (*taken)[N]) {
+  mpmi_gather job = {.weights = of->weights,
+                     .need = need,
+                     .points = of->points,
+                     .initial_volume = volume,
+                     .tile = tile,
+                     .ld = N,
+                     .v = taken[0],
+                     .dv = taken[3],
+                     .streams = {.end = N}};
+  for (int32_t k = 0; k < dim; ++k) job.axis[k] = of->axis[k];
+  for (int32_t e = 0; e < 9; ++e) job.L[e] = taken[6 + e], job.C[e] = taken[15 + e];
+  kernels->gather[dim][width][form](&job, 0, N);
+}
+
+/* Values of nodes, and volumes of particles, of which some are holes. */
+static void throw_nodes(uint64_t seed, double *tile, double *volume) {
+  dice d = {seed};
+  for (int32_t i = 0; i < 8 * MOST; ++i) tile[i] = throw_between(&d, -1.0, 1.0);
+  for (int32_t p = 0; p < N; ++p) volume[p] = p % 11 ? 1.0 : 0.0;
+}
+
 /* What particles take back of it is the same as well, where all have the same second moments. */
 START_TEST(even_nodes_give_what_all_do) {
   static double row[ROWS][N], tile[8 * MOST], taken[2][24][N], volume[N];
+  static const int32_t form[2][2] = {{MPMI_GATHER_AFFINE, MPMI_GATHER_AFFINE_VARIED},
+                                     {MPMI_GATHER_BOTH_AFFINE, MPMI_GATHER_BOTH_AFFINE_VARIED}};
   const int32_t isa = MPM_ISA_BASELINE + _i % 4, dim = 1 + _i / 4 % 3, width = 3 + _i / 12;
   if (!has_isa(isa)) return;
   const mpmi_kernels *kernels = mpmi_kernels_of(isa);
   const mpmi_scatter of = scatter_of(kernels, dim, width, 90 + (uint64_t)_i, row);
-  dice d = {7 + (uint64_t)_i};
-  for (int32_t i = 0; i < 8 * MOST; ++i) tile[i] = throw_between(&d, -1.0, 1.0);
-  for (int32_t p = 0; p < N; ++p) volume[p] = p % 11 ? 1.0 : 0.0; /* holes take nothing */
+  throw_nodes(7 + (uint64_t)_i, tile, volume);
   for (int32_t both = 0; both < 2; ++both) {
     memset(taken, 0, sizeof taken);
-    for (int32_t varied = 0; varied < 2; ++varied) {
-      mpmi_gather job = {.weights = of.weights,
-                         .need = MPMI_NEED_GRADIENT | (varied ? MPMI_NEED_MOMENT : 0),
-                         .points = of.points,
-                         .initial_volume = volume,
-                         .tile = tile,
-                         .ld = N,
-                         .v = taken[varied][0],
-                         .dv = taken[varied][3],
-                         .streams = {.end = N}};
-      for (int32_t k = 0; k < dim; ++k) job.axis[k] = of.axis[k];
-      for (int32_t e = 0; e < 9; ++e) job.L[e] = taken[varied][6 + e], job.C[e] = taken[varied][15 + e];
-      const int32_t form[2][2] = {{MPMI_GATHER_AFFINE, MPMI_GATHER_AFFINE_VARIED},
-                                  {MPMI_GATHER_BOTH_AFFINE, MPMI_GATHER_BOTH_AFFINE_VARIED}};
-      kernels->gather[dim][width][form[both][varied]](&job, 0, N);
-    }
+    for (int32_t varied = 0; varied < 2; ++varied)
+      gather_into(&of, kernels, dim, width, form[both][varied],
+                  MPMI_NEED_GRADIENT | (varied ? MPMI_NEED_MOMENT : 0), volume, tile, taken[varied]);
     same_values(taken[0][0], taken[1][0], 24 * N);
-    for (int32_t e = 0; e < 24; ++e) ck_assert(taken[0][e][0] == 0.0);
+    for (int32_t e = 0; e < 24; ++e) ck_assert(taken[0][e][0] == 0.0); /* holes take nothing */
   }
 }
 END_TEST
@@ -175,31 +187,18 @@ END_TEST
 /* Without the gradient velocities and their changes have the bits that they have beside it. */
 START_TEST(velocities_alone_are_the_same) {
   static double row[ROWS][N], tile[8 * MOST], taken[2][24][N], volume[N];
+  static const int32_t form[2][2] = {{MPMI_GATHER_MEAN, MPMI_GATHER_PLAIN},
+                                     {MPMI_GATHER_CHANGE, MPMI_GATHER_BOTH}};
   const int32_t isa = MPM_ISA_BASELINE + _i % 4, dim = 1 + _i / 4 % 3, width = 2 + _i / 12;
   if (!has_isa(isa)) return;
   const mpmi_kernels *kernels = mpmi_kernels_of(isa);
   const mpmi_scatter of = scatter_of(kernels, dim, width, 110 + (uint64_t)_i, row);
-  dice d = {9 + (uint64_t)_i};
-  for (int32_t i = 0; i < 8 * MOST; ++i) tile[i] = throw_between(&d, -1.0, 1.0);
-  for (int32_t p = 0; p < N; ++p) volume[p] = p % 11 ? 1.0 : 0.0;
+  throw_nodes(9 + (uint64_t)_i, tile, volume);
   for (int32_t both = 0; both < 2; ++both) {
     memset(taken, 0, sizeof taken);
-    for (int32_t gradient = 0; gradient < 2; ++gradient) {
-      mpmi_gather job = {.weights = of.weights,
-                         .need = gradient ? MPMI_NEED_GRADIENT | MPMI_NO_FIRST : 0,
-                         .points = of.points,
-                         .initial_volume = volume,
-                         .tile = tile,
-                         .ld = N,
-                         .v = taken[gradient][0],
-                         .dv = taken[gradient][3],
-                         .streams = {.end = N}};
-      for (int32_t k = 0; k < dim; ++k) job.axis[k] = of.axis[k];
-      for (int32_t e = 0; e < 9; ++e) job.L[e] = taken[gradient][6 + e];
-      const int32_t form[2][2] = {{MPMI_GATHER_MEAN, MPMI_GATHER_PLAIN},
-                                  {MPMI_GATHER_CHANGE, MPMI_GATHER_BOTH}};
-      kernels->gather[dim][width][form[both][gradient]](&job, 0, N);
-    }
+    for (int32_t gradient = 0; gradient < 2; ++gradient)
+      gather_into(&of, kernels, dim, width, form[both][gradient],
+                  gradient ? MPMI_NEED_GRADIENT | MPMI_NO_FIRST : 0, volume, tile, taken[gradient]);
     ck_assert_mem_eq(taken[0], taken[1], 6 * N * sizeof(double));
     for (int32_t e = 0; e < 6; ++e) ck_assert(taken[0][e][0] == 0.0);
     for (int32_t e = 6; e < 15; ++e) ck_assert(taken[0][e][1] == 0.0);

@@ -2,8 +2,8 @@
  * isotropic_function.h and principal_frame.h find for any e from its eigenvalues, with neither roots nor
  * divisions. Powers above the second follow from the lower ones by the theorem of Cayley and Hamilton,
  * e^3 = tr(e) e^2 - II e + det(e) I. */
-#ifndef MPMI_SMALL_STRETCH_H
-#define MPMI_SMALL_STRETCH_H
+#ifndef MPMI_ISOTROPIC_SERIES_H
+#define MPMI_ISOTROPIC_SERIES_H
 
 #include "simd/tensor.h"
 
