@@ -18,7 +18,7 @@ NUMBERS = {"uint8_t": "u8", "int32_t": "i32", "uint32_t": "u32", "int64_t": "i64
 ARRAYS = {"uint8_t": "Uint8Array", "int32_t": "Int32Array", "int64_t": "BigInt64Array", "double": "Float64Array", "float": "Float32Array"}
 # What holds the id of a particle, which is a BigInt as in arrays of ids; other 64-bit integers are counts.
 IDS = {("mpm_step_info", "particle")}
-REPORTS = ["mpm_step_info", "mpm_contact_info", "mpm_profile", "mpm_operator_info", "mpm_adaption_info"]
+REPORTS = ["mpm_step_info", "mpm_contact_info", "mpm_profile", "mpm_operator_info", "mpm_adaption_info", "mpm_heat_info"]
 
 
 def is_number(kind):

@@ -869,6 +869,37 @@ export interface AdaptionInfo {
   /** Angular momentum before, less that after: of merges without a matrix. 0 of MPM_AXISYMMETRIC. */
   angular_momentum_loss: number[];
 }
+/**
+ * Where heat came from, in the last step and in all steps since the first set was described or the time was
+ * set: gained = sum of walls + sources + surfaces + dissipated, to rounding, and with implicit conduction to
+ * the tolerance. All are energies.
+ */
+export interface HeatInfo {
+  /** of the last step's conjugate gradients */
+  iterations: number;
+  /** sum of mass specific_heat temperature now, of all sets that are described */
+  heat: number;
+  /** what particles took up in the last step */
+  gained: number;
+  /** through the faces, from MPM_X_MIN, into the material */
+  walls: number[];
+  /** of the callbacks */
+  sources: number;
+  /** through surfaces, into the material */
+  surfaces: number;
+  /** dissipated work that became heat */
+  dissipated: number;
+  /** the same in all steps, and so with those below */
+  gained_total: number;
+  /** through the faces */
+  walls_total: number[];
+  /** of the callbacks */
+  sources_total: number;
+  /** through surfaces */
+  surfaces_total: number;
+  /** dissipated work */
+  dissipated_total: number;
+}
 
 /** What a call says that was not done. After a positive status everything is as it was before. */
 export class MpmError extends Error {
@@ -1160,6 +1191,12 @@ export type FrictionFunction = (batch: ContactBatch, friction: Float64Array) => 
  * from it. It runs on the thread of the call. Returns as mpm_particle_fn does.
  */
 export type AdaptionFunction = (batch: AdaptionBatch, accept: Uint8Array) => Answer;
+/**
+ * Heat sources: writes power[i], [ld], power per present volume, at the time batch->t: the start of the step,
+ * and with implicit conduction its end. It runs as mpm_particle_fn does, on all threads, and returns as that
+ * does. A value that is not finite ends the step: MPM_NONFINITE.
+ */
+export type HeatFunction = (batch: ParticleBatch & Lent, power: Float64Array) => Answer;
 /**
  * Gives distances of points (mt). Points are particles, and nodes of blocks that are near the obstacle, also
  * those without material: nodes lie in the grid or up to one spacing beyond its faces, and of a grid with
@@ -1824,6 +1861,12 @@ export class Surface implements Handle {
    * away. The host sets it again after it has loaded a state. MPM_E_STATE during a staged step.
    */
   setVelocity(run: MarkerVelocityFunction | null): void;
+  /**
+   * Heats what lies below a surface, per area of its markers: flux + film (ambient - temperature of the
+   * material), power/area into the material; film is >= 0. All 0 (as made): no heat. Not part of a saved
+   * state. MPM_E_ARG: a value is bad. MPM_E_STATE: a step is under way.
+   */
+  setHeat(flux: number, film?: number, ambient?: number): void;
   /** The number of markers; 0 for NULL. */
   readonly count: number;
   /**
@@ -2024,6 +2067,41 @@ export class Stepper implements Handle {
    * info is NULL.
    */
   adaptionInfo(set: Particles): AdaptionInfo;
+  /**
+   * null describes it no longer.
+   *
+   * Describes the heat of a set of the stepper, for the steps that follow; NULL: it has none any more, and
+   * its fields stay as fields of the host. Not part of a saved state, but the fields are: the host describes
+   * before it loads. MPM_E_NOT_FOUND: the set is not in the stepper. MPM_E_ARG: particles is NULL, a value is
+   * bad, or the set has a field "temperature" or "stress_temperature" of another type or with more
+   * components. MPM_E_UNSUPPORTED: expansion is not 0 on MPM_PLANE_STRESS or with the law "rigid";
+   * dissipated_share is not 0 with "rigid" or a law of the host. MPM_E_STATE: a step is under way, a view of
+   * the set is out, or the set has no room for another field.
+   */
+  setHeat(set: Particles, desc: HeatDesc | null, source?: HeatFunction | null): this;
+  /**
+   * The tolerance is 1e-8 by default.
+   *
+   * Chooses how the nodes conduct, from MPM_CONDUCTION_EXPLICIT (as made) on. tolerance: of the residual of
+   * conjugate gradients, relative to the right-hand side; > 0 and < 1; not read with explicit conduction.
+   * MPM_E_ARG: a value is bad. MPM_E_STATE: a step is under way.
+   */
+  setConduction(conduction: number, tolerance?: number): this;
+  /**
+   * Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature is
+   * not read of insulated ones, which all faces are from the start. Call it again where the temperature
+   * changes: that change, at first from what the material there has, reaches the particles in the next step;
+   * material that comes to the face later is heated by conduction alone. Where two such faces meet, that of
+   * the lower axis prescribes the edge. Not part of a saved state. MPM_E_ARG: a value is bad, or the axis is
+   * periodic. MPM_E_UNSUPPORTED: the face is the axis of MPM_AXISYMMETRIC, through which nothing flows.
+   * MPM_E_STATE: a step is under way.
+   */
+  setHeatWall(face: number, kind: number, temperature?: number): this;
+  /**
+   * Tells where heat came from. MPM_E_ARG: info is NULL. MPM_E_STATE: a step is under way, or no set was ever
+   * described.
+   */
+  heatInfo(): HeatInfo;
   /**
    * Sets the callback that adds accelerations of particles, length/time^2 (b of MPoint theory, eq. 21). It is
    * called for every set. NULL takes it away.

@@ -39,6 +39,7 @@ export class Stepper extends Handle {
     this.call('mpm_stepper_remove', [this.#set(set)]);
     this.functions.set(set, 'mpm_particle_fn', null, () => {});
     this.functions.set(`adaption ${this.#set(set)}`, 'mpm_adaption_fn', null, () => {});
+    this.functions.set(`heat ${this.#set(set)}`, 'mpm_heat_fn', null, () => {});
     this.drop(set);
   }
   addObstacle(obstacle) {
@@ -84,23 +85,44 @@ export class Stepper extends Handle {
   }
 
   // ---- splitting and merging ----
-  setAdaption(set, desc, accept = null) {
+  /** Describes something about a set, of which a function is part. */
+  #describe(what, set, desc, field, run) {
     this.arguments((a) => {
       const at = this.#set(set);
-      const to = desc ? a.struct('mpm_adaption_desc', desc) : 0;
-      this.functions.set(`adaption ${at}`, 'mpm_adaption_fn', desc ? accept : null, (call, user) => {
-        if (to) a.put(to, 'mpm_adaption_desc', 'accept', call);
-        if (to) a.put(to, 'mpm_adaption_desc', 'user', user);
-        this.call('mpm_stepper_set_adaption', [at, to]);
+      const struct = `mpm_${what}_desc`;
+      const to = desc ? a.struct(struct, desc) : 0;
+      this.functions.set(`${what} ${at}`, `mpm_${what}_fn`, desc ? run : null, (call, user) => {
+        if (to) a.put(to, struct, field, call);
+        if (to) a.put(to, struct, 'user', user);
+        this.call(`mpm_stepper_set_${what}`, [at, to]);
       });
     });
     return this;
+  }
+  setAdaption(set, desc, accept = null) {
+    return this.#describe('adaption', set, desc, 'accept', accept);
   }
   adapt() {
     this.call('mpm_stepper_adapt', []);
   }
   adaptionInfo(set) {
     return this.askStruct('mpm_stepper_adaption_info', [this.#set(set)], 'mpm_adaption_info');
+  }
+
+  // ---- heat ----
+  setHeat(set, desc, source = null) {
+    return this.#describe('heat', set, desc, 'source', source);
+  }
+  setConduction(conduction, tolerance = 1e-8) {
+    this.call('mpm_stepper_set_conduction', [conduction, tolerance]);
+    return this;
+  }
+  setHeatWall(face, kind, temperature = 0) {
+    this.call('mpm_stepper_set_heat_wall', [face, kind, temperature]);
+    return this;
+  }
+  heatInfo() {
+    return this.askStruct('mpm_stepper_heat_info', [], 'mpm_heat_info');
   }
 
   // ---- callbacks ----

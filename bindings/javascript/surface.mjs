@@ -32,6 +32,10 @@ export class Surface extends Handle {
     );
   }
 
+  setHeat(flux, film = 0, ambient = 0) {
+    this.call('mpm_surface_set_heat', [flux, film, ambient]);
+  }
+
   // ---- markers ----
   get count() {
     return Number(this.machine.raw.mpm_surface_count(this.at));

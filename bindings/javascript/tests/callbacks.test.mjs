@@ -524,6 +524,71 @@ test('splitting and merging', () => {
   assert.throws(() => stepper.adaptionInfo(set), MpmError);
 });
 
+test('heat', () => {
+  const { context, grid, set, stepper } = scene({ velocity: 0 });
+  const n = set.count;
+  const mass = set.get('mass').reduce((sum, one) => sum + one, 0);
+  assert.throws(() => stepper.heatInfo(), MpmError);
+  assert.throws(() => stepper.setHeat(set, { specific_heats: 1 }), /specific_heats/);
+  assert.throws(() => stepper.setHeat(set, {}), /specific_heat/);
+  stepper.setHeat(set, { specific_heat: 2, reference_temperature: 10 }, (batch, power) => {
+    assert.equal(batch.mass.length, power.length);
+    power.fill(3);
+  });
+  assert.deepEqual([...set.get('temperature')], Array(n).fill(10));
+  stepper.step(1e-3);
+  const volume = set.get('initial_volume').reduce((sum, one) => sum + one, 0);
+  const { gained, sources, heat, walls } = stepper.heatInfo();
+  assert.ok(Math.abs(sources / (3e-3 * volume) - 1) < 1e-6 && Math.abs(gained / sources - 1) < 1e-10);
+  assert.ok(Math.abs(heat / (2 * mass * 10 + gained) - 1) < 1e-12);
+  assert.deepEqual([...walls], Array(6).fill(0));
+
+  // a flux through a surface, and then a film towards what it has around it
+  stepper.setHeat(set, { specific_heat: 2, conductivity: 1 });
+  const face = context.surface(grid);
+  const [x, y] = [set.get('position').slice(0, n), set.get('position').slice(n)];
+  const floor = Math.min(...y);
+  face.addPolyline([Math.max(...x), floor, Math.min(...x), floor], false, 0.1);
+  face.setHeat(5);
+  stepper.addSurface(face).setConduction(C.MPM_CONDUCTION_IMPLICIT, 1e-10);
+  stepper.step(1e-3);
+  const width = Math.max(...x) - Math.min(...x);
+  const through = stepper.heatInfo();
+  assert.ok(Math.abs(through.surfaces / (5e-3 * width) - 1) < 1e-3 && through.iterations > 0);
+  face.setHeat(0, 1, 5);
+  stepper.step(1e-3);
+  assert.ok(stepper.heatInfo().surfaces < 0);
+  assert.throws(() => face.setHeat(0, -1), /film/);
+
+  // what a source throws leaves all as it was
+  const before = stepper.hash();
+  const mine = new RangeError('too hot');
+  stepper.setHeat(set, { specific_heat: 2 }, () => {
+    throw mine;
+  });
+  assert.throws(
+    () => stepper.step(1e-3),
+    (error) => error === mine,
+  );
+  assert.equal(stepper.hash(), before);
+  stepper.setHeat(set, null).step(1e-3);
+  stepper.remove(set);
+});
+
+test('a face at a temperature heats what lies at it', () => {
+  const { context, grid, material } = scene();
+  const set = context.particles(grid, material);
+  set.fillBox([0.25, 0], [0.5, 0.25], [2, 2]);
+  const stepper = context.stepper(grid).add(set).setHeat(set, { specific_heat: 1, conductivity: 1 });
+  assert.throws(() => stepper.setHeatWall(C.MPM_Y_MIN, 7, 1), MpmError);
+  stepper.setHeatWall(C.MPM_Y_MIN, C.MPM_HEAT_WALL_TEMPERATURE, 4);
+  stepper.setConduction(C.MPM_CONDUCTION_EXPLICIT).step(1e-4);
+  const { gained, walls } = stepper.heatInfo();
+  assert.ok(gained > 0 && Math.abs(gained - walls[C.MPM_Y_MIN]) <= 1e-12 * gained);
+  stepper.setHeatWall(C.MPM_Y_MIN, C.MPM_HEAT_WALL_INSULATED).step(1e-4);
+  assert.equal(stepper.heatInfo().walls[C.MPM_Y_MIN], 0);
+});
+
 test('what a log throws comes out of the call that it is told of', () => {
   const failing = () => {
     throw new Error('full');

@@ -40,6 +40,12 @@ export async function main(): Promise<bigint> {
     if (batch.other) accept.fill(0);
   });
   info.t += stepper.adaptionInfo(set).splits;
+  stepper.setHeat(set, { specific_heat: 1 }, (batch, power) => {
+    power.fill(batch.t);
+  });
+  stepper.setConduction(C.MPM_CONDUCTION_IMPLICIT, 1e-9).setHeatWall(C.MPM_X_MIN, C.MPM_HEAT_WALL_TEMPERATURE, 1);
+  face.setHeat(1, 0.5);
+  info.t += stepper.heatInfo().walls[C.MPM_X_MIN];
   stepper.addSurface(face).removeSurface(face);
   const id: bigint = info.particle;
 
