@@ -156,9 +156,7 @@ const ADAPTERS = {
   mpm_adaption_fn: withBatch('mpm_adaption_batch', (m, run, batch, accept) =>
     run(batch, batch.beside('u8', accept, 1)[0]),
   ),
-  mpm_heat_fn: withBatch('mpm_particle_batch', (m, run, batch, power) =>
-    run(batch, batch.beside('f64', power, 1)[0]),
-  ),
+  mpm_heat_fn: withBatch('mpm_particle_batch', (m, run, batch, power) => run(batch, batch.beside('f64', power, 1)[0])),
   mpm_distance_fn: withBatch('mpm_distance_batch', (m, run, batch) => run(batch)),
   mpm_traction_fn: withBatch('mpm_marker_batch', (m, run, batch, add) => run(batch, batch.beside('f64', add))),
   mpm_marker_velocity_fn: withBatch('mpm_marker_batch', (m, run, batch, add) => run(batch, batch.beside('f64', add))),

@@ -2068,7 +2068,8 @@ export class Stepper implements Handle {
    */
   adaptionInfo(set: Particles): AdaptionInfo;
   /**
-   * null describes it no longer.
+   * null describes it no longer. `source` writes power per volume; without it there is none. The set has the
+   * field "temperature" from then on.
    *
    * Describes the heat of a set of the stepper, for the steps that follow; NULL: it has none any more, and
    * its fields stay as fields of the host. Not part of a saved state, but the fields are: the host describes
@@ -2080,7 +2081,7 @@ export class Stepper implements Handle {
    */
   setHeat(set: Particles, desc: HeatDesc | null, source?: HeatFunction | null): this;
   /**
-   * The tolerance is 1e-8 by default.
+   * The tolerance is 1e-9 by default.
    *
    * Chooses how the nodes conduct, from MPM_CONDUCTION_EXPLICIT (as made) on. tolerance: of the residual of
    * conjugate gradients, relative to the right-hand side; > 0 and < 1; not read with explicit conduction.

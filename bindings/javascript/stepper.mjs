@@ -38,8 +38,8 @@ export class Stepper extends Handle {
   remove(set) {
     this.call('mpm_stepper_remove', [this.#set(set)]);
     this.functions.set(set, 'mpm_particle_fn', null, () => {});
-    this.functions.set(`adaption ${this.#set(set)}`, 'mpm_adaption_fn', null, () => {});
-    this.functions.set(`heat ${this.#set(set)}`, 'mpm_heat_fn', null, () => {});
+    for (const what of ['adaption', 'heat'])
+      this.functions.set(`${what} ${this.#set(set)}`, `mpm_${what}_fn`, null, () => {});
     this.drop(set);
   }
   addObstacle(obstacle) {
@@ -85,7 +85,7 @@ export class Stepper extends Handle {
   }
 
   // ---- splitting and merging ----
-  /** Describes something about a set, of which a function is part. */
+  /** Gives the library a description of a set, with the function that is part of it. */
   #describe(what, set, desc, field, run) {
     this.arguments((a) => {
       const at = this.#set(set);
@@ -113,7 +113,7 @@ export class Stepper extends Handle {
   setHeat(set, desc, source = null) {
     return this.#describe('heat', set, desc, 'source', source);
   }
-  setConduction(conduction, tolerance = 1e-8) {
+  setConduction(conduction, tolerance = 1e-9) {
     this.call('mpm_stepper_set_conduction', [conduction, tolerance]);
     return this;
   }

@@ -55,12 +55,8 @@ static void add_block(void *user, const mpmi_visit *visit) {
                 tile);
 }
 
-/* Where all ties are taken, nodes get values that no stencil meets. */
 static int32_t stays_zero_elsewhere(const mpmi_step *step, const mpmi_accumulation *sum) {
-  const mpmi_settings *settings = step->settings;
-  const mpmi_layout *layout = step->layout;
-  return !sum->flags && !mpmi_gives_anywhere(settings) &&
-         (!layout->constraints.tie_count || mpmi_leaves_ties(layout, settings));
+  return !sum->flags && !mpmi_gives_anywhere(step->settings);
 }
 
 /* ---- with other parts ---------------------------------------------------------------------------------- */

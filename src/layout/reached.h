@@ -21,7 +21,7 @@ mpmi_spans mpmi_spans_of(const mpmi_blocks *b, int64_t block);
 mpmi_spans mpmi_spans_of_stencil(const mpmi_blocks *b, int64_t block, int32_t width, int32_t below);
 
 /* Finds where the particles of each block are, and which nodes and ties they meet; that takes room for a list
- * of ties. A particle may drift so far, in cells, before it is found anew. */
+ * of ties. A particle may drift so far, in cells, before the cover is found anew. */
 #define MPMI_COVER_DRIFT 0.5
 mpm_status mpmi_layout_cover(mpmi_layout *layout);
 /* Sets the bounds of a block's whole tile: beyond them all particles are sorted anew. */

@@ -1,5 +1,5 @@
-/* ln V and V^-1 for V V = I + e of a small symmetric 3x3 tensor e, and exp(e), by power series: what
- * isotropic_function.h and principal_frame.h find for any e from its eigenvalues, with neither roots nor
+/* ln V and V^-1 for V V = I + e of a small or moderate symmetric 3x3 tensor e, and exp(e), by power series:
+ * what isotropic_function.h and principal_frame.h find for any e from its eigenvalues, with neither roots nor
  * divisions. Powers above the second follow from the lower ones by the theorem of Cayley and Hamilton,
  * e^3 = tr(e) e^2 - II e + det(e) I. */
 #ifndef MPMI_ISOTROPIC_SERIES_H

@@ -115,12 +115,12 @@ MPMI_INLINE void flow_step(int dim, int32_t linear, const flow_constants *consta
                            const mpm_material_batch *batch) {
   const flow_constants c = *constants;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
-  const mpmi_frame in = mpmi_frame_of(&c.elastic, batch);
+  const mpmi_frame frame = mpmi_frame_of(&c.elastic, batch);
   const double mu = c.elastic.mu, a = mpmi_max(mu * batch->dt, 1e-300), log_a = mpmi_lane_log(a);
   double *stress = batch->stress_new;
   for (int64_t begin = 0; begin < n; begin += MPMI_CHUNK) {
     mpmi_trial_rows trial;
-    mpmi_find_trials(dim, in, begin, &trial);
+    mpmi_find_trials(dim, frame, begin, &trial);
     MPMI_IVDEP
     for (int p = 0; p < MPMI_CHUNK; ++p) {
       double mean;
@@ -190,9 +190,9 @@ MPMI_INLINE void flow_chunk(int dim, int32_t linear, const flow_constants *c, co
 MPMI_INLINE void herschel_bulkley_tangent(int dim, const flow_constants *c, const mpm_material_batch *batch,
                                           double *tangent) {
   mpmi_principal o;
-  const mpmi_frame in = mpmi_frame_of(&c->elastic, batch);
+  const mpmi_frame frame = mpmi_frame_of(&c->elastic, batch);
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
-    mpmi_principal_load(dim, &o, in, i);
+    mpmi_principal_load(dim, &o, frame, i);
     if (is_linear(c))
       flow_chunk(dim, 1, c, batch, i, &o);
     else

@@ -305,10 +305,10 @@ MPMI_INLINE void mohr_coulomb(int dim, const mohr_constants *constants, const mp
   const mohr_constants c = *constants;
   const int64_t ld = batch->ld;
   if (!mpmi_keeps_state(dim, 2, batch)) {
-    const mpmi_frame in = mpmi_frame_of(&c.elastic, batch);
+    const mpmi_frame frame = mpmi_frame_of(&c.elastic, batch);
     mpmi_principal o;
     for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
-      mpmi_principal_load(dim, &o, in, i);
+      mpmi_principal_load(dim, &o, frame, i);
       mohr_chunk(&c, batch->state + i, batch->state + ld + i, batch->state_new + i, batch->state_new + ld + i,
                  &o);
       mpmi_principal_stress(dim, &o, batch->stress_new + i, ld);
@@ -340,10 +340,10 @@ MPMI_INLINE void slopes(const mohr_constants *c, const mohr_result *r, double (*
 MPMI_INLINE void mohr_coulomb_tangent(int dim, const mohr_constants *c, const mpm_material_batch *batch,
                                       double *tangent) {
   const int64_t ld = batch->ld;
-  const mpmi_frame in = mpmi_frame_of(&c->elastic, batch);
+  const mpmi_frame frame = mpmi_frame_of(&c->elastic, batch);
   mpmi_principal o;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
-    mpmi_principal_load(dim, &o, in, i);
+    mpmi_principal_load(dim, &o, frame, i);
     MPMI_IVDEP
     for (int p = 0; p < MPMI_CHUNK; ++p) {
       double e[3] = {o.strain[0][p], o.strain[1][p], o.strain[2][p]}, a[3][3], tau[3];

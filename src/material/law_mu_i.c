@@ -76,12 +76,12 @@ MPMI_INLINE grains_return come_back(const grains_constants *c, double dt, double
 MPMI_INLINE void grains_step(int dim, const grains_constants *constants, const mpm_material_batch *batch) {
   const grains_constants c = *constants;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
-  const mpmi_frame in = mpmi_frame_of(&c.elastic, batch);
+  const mpmi_frame frame = mpmi_frame_of(&c.elastic, batch);
   const double mu2 = 2.0 * c.elastic.mu, dt = batch->dt, *old = batch->state;
   double *stress = batch->stress_new, *state = batch->state_new;
   for (int64_t begin = 0; begin < n; begin += MPMI_CHUNK) {
     mpmi_trial_rows trial;
-    mpmi_find_trials(dim, in, begin, &trial);
+    mpmi_find_trials(dim, frame, begin, &trial);
     MPMI_IVDEP
     for (int p = 0; p < MPMI_CHUNK; ++p) {
       const int64_t i = begin + p;
@@ -117,9 +117,9 @@ MPMI_INLINE void grains_chunk(const grains_constants *c, double dt, const double
 MPMI_INLINE void mu_i_tangent(int dim, const grains_constants *c, const mpm_material_batch *batch,
                               double *tangent) {
   mpmi_principal o;
-  const mpmi_frame in = mpmi_frame_of(&c->elastic, batch);
+  const mpmi_frame frame = mpmi_frame_of(&c->elastic, batch);
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
-    mpmi_principal_load(dim, &o, in, i);
+    mpmi_principal_load(dim, &o, frame, i);
     grains_chunk(c, batch->dt, batch->state + i, batch->state + batch->ld + i, &o);
     KERNEL(principal_rows)(dim, &o, tangent + i, batch->ld);
   }

@@ -1,7 +1,7 @@
 /* Kinematics that linear_elastic, j2 and newtonian_fluid share. With the increment F_inc = V R (polar
- * decomposition) the stress turns with R and the strain increment is ln V: rotations leave no stress behind,
- * whatever the size of the step. G = F_inc - I is taken as dt L, so that small increments keep their digits.
- */
+ * decomposition) the strain increment is ln V, and the stress of solids turns with R: rotations leave no
+ * stress behind, whatever the size of the step. G = F_inc - I is taken as dt L, so that small increments keep
+ * their digits. */
 #ifndef MPMI_OBJECTIVE_INCREMENT_H
 #define MPMI_OBJECTIVE_INCREMENT_H
 

@@ -240,8 +240,8 @@ static inline void sample_evaluate(sample *s, const mpm_material *material, int3
     if (s->wave_speed[i] >= 0.0) s->wave_speed[i] = sqrt(s->wave_speed[i]);
 }
 
-/* Which items of a chunk are large in two of three samples, and which no numbers in the last one: in each
- * register. */
+/* Which items of a chunk are large in two of three samples, and which no numbers in the last one: a large one
+ * beside one that is none, and two of these in one register. */
 static inline int32_t sample_is_large(int i) {
   return i % 16 == 9;
 }

@@ -531,8 +531,10 @@ test('heat', () => {
   assert.throws(() => stepper.heatInfo(), MpmError);
   assert.throws(() => stepper.setHeat(set, { specific_heats: 1 }), /specific_heats/);
   assert.throws(() => stepper.setHeat(set, {}), /specific_heat/);
+  assert.throws(() => stepper.setHeat(set, { specific_heat: 1, source() {} }), /source/);
   stepper.setHeat(set, { specific_heat: 2, reference_temperature: 10 }, (batch, power) => {
     assert.equal(batch.mass.length, power.length);
+    assert.ok(batch.field('temperature')[0].some((one) => one === 10) && power.every((one) => one === 0));
     power.fill(3);
   });
   assert.deepEqual([...set.get('temperature')], Array(n).fill(10));
@@ -550,7 +552,8 @@ test('heat', () => {
   const floor = Math.min(...y);
   face.addPolyline([Math.max(...x), floor, Math.min(...x), floor], false, 0.1);
   face.setHeat(5);
-  stepper.addSurface(face).setConduction(C.MPM_CONDUCTION_IMPLICIT, 1e-10);
+  assert.throws(() => stepper.setConduction(C.MPM_CONDUCTION_IMPLICIT, 1), /tolerance/);
+  stepper.addSurface(face).setConduction(C.MPM_CONDUCTION_IMPLICIT);
   stepper.step(1e-3);
   const width = Math.max(...x) - Math.min(...x);
   const through = stepper.heatInfo();
@@ -571,8 +574,22 @@ test('heat', () => {
     (error) => error === mine,
   );
   assert.equal(stepper.hash(), before);
+
+  // a source is kept as long as it is described
+  const { used } = stepper.functions;
+  assert.equal(used.size, 1);
+  let calls = 0;
+  stepper.setHeat(set, { specific_heat: 2 }, () => void calls++);
+  assert.equal(used.size, 1);
   stepper.setHeat(set, null).step(1e-3);
+  assert.deepEqual([used.size, calls], [0, 0]);
+  stepper.setHeat(set, { specific_heat: 2, expansion: 1e-3 }, () => void calls++).step(1e-3);
+  const seen = calls;
+  assert.ok(seen > 0 && set.get('stress_temperature').some((one) => one !== 0));
   stepper.remove(set);
+  assert.equal(used.size, 0);
+  stepper.add(set).step(1e-3);
+  assert.equal(calls, seen);
 });
 
 test('a face at a temperature heats what lies at it', () => {

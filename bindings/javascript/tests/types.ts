@@ -49,6 +49,8 @@ export async function main(): Promise<bigint> {
   stepper.addSurface(face).removeSurface(face);
   const id: bigint = info.particle;
 
+  // @ts-expect-error: a source is an argument of its own
+  stepper.setHeat(set, { specific_heat: 1, source: pull });
   // @ts-expect-error: there is no such option
   context.grid({ dim: 2, cels: [4, 4] });
   // @ts-expect-error: ids are BigInts
