@@ -31,7 +31,6 @@ export class Surface extends Handle {
       this.call('mpm_surface_set_velocity', [call, user]),
     );
   }
-
   setHeat(flux, film = 0, ambient = 0) {
     this.call('mpm_surface_set_heat', [flux, film, ambient]);
   }

@@ -50,6 +50,8 @@ MPMI_INLINE mpmi_sym mpmi_polynomial_at(mpmi_polynomial p, mpmi_sym e, mpmi_sym 
   return f;
 }
 
+/* Terms are written out: a loop over them would keep the compiler from taking particles side by side. */
+
 /* ln V = 1/2 (e - e^2 / 2 + e^3 / 3 - ...): the terms below the seventh power, after p of the others. */
 MPMI_INLINE mpmi_sym mpmi_log_stretch_from(mpmi_polynomial p, mpmi_sym e, const mpmi_powers *of) {
   p = mpmi_times(p, -1.0 / 12.0, of);
