@@ -69,6 +69,8 @@ static const bench_case cases[] = {
      BENCH_HALVES},
     {"3-D FLIP, total Lagrangian", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40,
      BENCH_TOTAL},
+    {"3-D FLIP, total Lagrangian, lattice", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40,
+     BENCH_TOTAL_LATTICE},
     {"3-D FLIP, heat", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_HEAT},
     {"3-D FLIP, heat, implicit", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40,
      BENCH_HEAT_IMPLICIT},

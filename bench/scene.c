@@ -66,17 +66,22 @@ static void shuffle(int64_t n, int64_t *order, uint64_t *dice) {
   }
 }
 
-/* A jittered lattice of side^dim particles, 2^dim per cell, from `corner` on; the first part[k] of them on
+/* A lattice of side^dim particles, 2^dim per cell, from `corner` on; the first part[k] of them on
  * each axis are those of another body. */
 typedef struct lattice {
   int32_t dim;
   int64_t side, part[3];
+  int32_t jittered;
   double corner;
 } lattice;
 
 static lattice lattice_of(const bench_case *of, int64_t side, double corner) {
   const int32_t divided = of->extras == BENCH_CORNER || of->extras == BENCH_HALVES;
-  lattice l = {.dim = of->dim, .side = side, .part = {0, 0, 0}, .corner = corner};
+  lattice l = {.dim = of->dim,
+               .side = side,
+               .part = {0, 0, 0},
+               .corner = corner,
+               .jittered = of->extras != BENCH_TOTAL_LATTICE};
   for (int32_t k = 0; k < of->dim && divided; ++k)
     l.part[k] = of->extras == BENCH_CORNER ? 18 : k ? side : side / 4 * 2;
   return l;
@@ -99,7 +104,8 @@ static mpm_status place(mpm_particles *set, const lattice *l, int32_t part) {
       double at[3];
       int32_t in_part = 1;
       for (int32_t k = 0; k < dim; ++k, order[i] /= side) {
-        at[k] = l->corner + 0.5 * ((double)(order[i] % side) + 0.25 + 0.5 * uniform(&dice));
+        at[k] =
+            l->corner + 0.5 * ((double)(order[i] % side) + (l->jittered ? 0.25 + 0.5 * uniform(&dice) : 0.5));
         in_part &= order[i] % side < l->part[k];
       }
       if (in_part != part) continue;
@@ -303,7 +309,7 @@ mpm_status bench_open(bench_scene *scene, const bench_case *of, const bench_opti
   g.dim = of->dim;
   g.basis = of->basis;
   g.boundary_basis = of->extras == BENCH_OPEN_KNOTS ? MPM_BOUNDARY_OPEN_KNOT : MPM_BOUNDARY_GHOST;
-  g.total_lagrangian = of->extras == BENCH_TOTAL;
+  g.total_lagrangian = of->extras == BENCH_TOTAL || of->extras == BENCH_TOTAL_LATTICE;
   for (int32_t k = 0; k < of->dim; ++k) {
     g.spacing[k] = 1.0;
     g.cells[k] = of->extras == BENCH_WALLS ? (int64_t)cells + 4 : (int64_t)(options->spread * cells);

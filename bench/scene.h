@@ -18,7 +18,8 @@ enum {
   BENCH_CORNER, /* a corner of the body, nine cells wide, is another body in contact: 999 shared nodes */
   BENCH_HALVES, /* one half of the body is another body in contact */
   BENCH_TOTAL,  /* a total Lagrangian grid */
-  BENCH_HEAT,   /* the body conducts, in explicit steps */
+  BENCH_TOTAL_LATTICE, /* the same without jitter, as fills place particles */
+  BENCH_HEAT,          /* the body conducts, in explicit steps */
   BENCH_HEAT_IMPLICIT
 };
 

@@ -39,6 +39,8 @@ mpm_status mpm_particles_remove(mpm_particles *particles, int64_t n, const int64
   }
   particles->count -= n;
   particles->dirty |= MPMI_DIRTY_SUMS;
+  /* the rest of a cluster has its place behind the others, whether or not a sort comes for another reason */
+  if (mpmi_is_total_lagrangian(particles->grid)) particles->dirty |= MPMI_DIRTY_PLACE;
   mpmi_index_drop(particles);
   return MPM_OK;
 }

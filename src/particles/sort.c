@@ -1,5 +1,6 @@
 #include "particles/sort.h"
 #include "context/slack.h"
+#include "particles/clusters.h"
 
 #include <string.h>
 
@@ -69,24 +70,40 @@ static int64_t slot_in_turn(const mpmi_sorting *sorting, int64_t i) {
   return i < sorting->tail + sorting->tail_low ? i - sorting->tail_low : i;
 }
 
+/* Orders the particles of each block for kernels that take clusters; behind the slots there is room for those
+ * of one block. */
+static void order_clusters(const mpm_particles *set, int64_t blocks, mpmi_sorting *sorting,
+                           const mpmi_arrangement *to) {
+  uint32_t *room = sorting->source + to->start[blocks];
+  for (int64_t b = 0; b < blocks; ++b) {
+    uint32_t *source = sorting->source + to->start[b];
+    int64_t count = to->start[b + 1] - to->start[b];
+    while (count && source[count - 1] == NONE) --count;
+    mpmi_clusters_first(set, count, source, room);
+  }
+}
+
 mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                           mpmi_arrangement *to) {
   const uint32_t *of_slot = blocks_of_slots(set);
   mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
   if (status) return status;
-  const int32_t by_id =
-      (set->dirty & (MPMI_DIRTY_ORDER | MPMI_DIRTY_IDS)) && (sorting->tail_low || !mpmi_ids_ascend(set));
+  /* clusters are first in their blocks whoever has come and gone: what is behind them goes by id */
+  const int32_t stay = mpmi_is_total_lagrangian(set->grid);
+  const int32_t by_id = (stay || set->dirty & (MPMI_DIRTY_ORDER | MPMI_DIRTY_IDS)) &&
+                        (sorting->tail_low || !mpmi_ids_ascend(set));
   if (by_id && (status = mpmi_index_build(set))) return status;
   memset(to->start, 0, (size_t)(blocks->count + 1) * sizeof *to->start);
   for (int64_t s = 0; s < set->slots; ++s)
     if (of_slot[s] != NONE) ++to->start[blocks->order[of_slot[s]]];
-  int64_t slots = 0;
+  int64_t slots = 0, most = 0;
   for (int64_t b = 0; b <= blocks->count; ++b) {
     const int64_t here = padded(to->start[b]);
     to->start[b] = slots;
     slots += here;
+    if (stay && here > most) most = here;
   }
-  const int64_t room = slots > set->ld ? mpmi_leading_dimension(slots) : set->ld;
+  const int64_t room = (slots > set->ld ? mpmi_leading_dimension(slots) : set->ld) + most;
   if ((status = mpmi_reserve(set->context, (void **)&sorting->source, &sorting->source_capacity, room,
                              sizeof *sorting->source)))
     return status;
@@ -99,6 +116,7 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_so
   }
   for (int64_t b = blocks->count; b > 0; --b) to->start[b] = padded(to->start[b - 1]);
   to->start[0] = 0;
+  if (stay) order_clusters(set, blocks->count, sorting, to);
   return mpmi_particles_reserve(set,
                                 slots); /* last, because the second copies may move, and with them of_slot */
 }

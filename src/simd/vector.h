@@ -231,6 +231,7 @@ MPMI_INLINE mpmi_node mpmi_node_scale(int32_t part, double s, mpmi_node a) {
 }
 MPMI_INLINE mpmi_node mpmi_node_fma(int32_t part, mpmi_node a, double s, mpmi_node b) {
   if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(a.four + s * b.four, a.high + s * b.high);
+  if (part == MPMI_HALVES_HIGH) return mpmi_node_of_halves(a.four, a.high + s * b.high);
   return part == MPMI_LOW ? mpmi_node_of4(a.four + s * b.four) : mpmi_node_of8(a.eight + s * b.eight);
 }
 MPMI_INLINE mpmi_node mpmi_node_sum(int32_t part, mpmi_node a, mpmi_node b) {
@@ -247,6 +248,7 @@ MPMI_INLINE mpmi_node mpmi_node_round(int32_t part, mpmi_node v) {
 }
 /* a + b and a - b in the lower half; the upper one is that of a. b is rounded first. */
 MPMI_INLINE mpmi_node mpmi_node_add_low(int32_t part, mpmi_node a, mpmi_node b) {
+  if (part == MPMI_LOW) return mpmi_node_of4(a.four + mpmi_round4(b.four));
   if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(a.four + mpmi_round4(b.four), a.high);
   return mpmi_node_of8(_mm512_mask_add_pd(a.eight, 0x0f, a.eight, mpmi_node_round(part, b).eight));
 }

@@ -10,6 +10,7 @@
  * gather zeros. */
 #include "simd/pack.h"
 #include "transfer/gather.h"
+#include "transfer/cluster.h"
 
 /* Holds, per particle of a chunk: v; dv; gradients; sums of w v (x_i - x_p), or of w v (i - middle) where D
  * is the same for all. Below three axes two of these share four values: v and dv, and the columns of a
@@ -57,59 +58,134 @@ MPMI_INLINE void store_columns(int32_t dim, int32_t part, const mpmi_node *colum
   for (int32_t k = 0; k < dim; ++k) mpmi_store4(to[k] + 4 * p, mpmi_node_low(part, column[k]));
 }
 
-MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W,
-                                 const double *inverse_spacing, int64_t p, const double *tile,
-                                 mpmi_gathered *out) {
-  const int32_t values = mpmi_taken_values(mpmi_gather_takes(dim, form)), slopes = mpmi_gathers_L(form);
-  const int32_t moment = moment_of(form), even = moment == EVEN_MOMENT, varied = moment == VARIED_MOMENT;
-  const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW, part = values == 8 ? MPMI_HALF : MPMI_LOW;
+/* What a form takes of nodes: how many values, which parts of them for v and for the rest, and whether L. */
+typedef struct mpmi_taking {
+  int32_t values, all, part, slopes, moment;
+} mpmi_taking;
+MPMI_INLINE mpmi_taking taking_of(int32_t dim, int32_t form) {
+  const int32_t values = mpmi_taken_values(mpmi_gather_takes(dim, form));
+  return (mpmi_taking){values, values == 8 ? MPMI_BOTH : MPMI_LOW, values == 8 ? MPMI_HALF : MPMI_LOW,
+                       mpmi_gathers_L(form), moment_of(form)};
+}
+
+/* What is taken over some axes: v and its change, and by axis L and the moments of C. */
+typedef struct mpmi_partial {
+  mpmi_node v, L[3], M[3];
+} mpmi_partial;
+
+/* sum += node k of an axis, or what was taken there over the axes behind it, by the weights of particle p. */
+MPMI_INLINE void add_partial(int32_t dim, int32_t width, mpmi_taking t, const mpmi_weights *W,
+                             const double *inverse_spacing, int32_t axis, int32_t k, int64_t p,
+                             const mpmi_partial *in, mpmi_partial *sum) {
+  const double w = W->w[axis][k][p];
+  add(t.all, t.part, t.moment == EVEN_MOMENT, width, k, w, in->v, &sum->v, &sum->M[axis]);
+  if (t.slopes)
+    add_slope(t.part, k, mpmi_gradient(dim, width, W, inverse_spacing, axis, k, p), in->v, &sum->L[axis]);
+  if (t.moment == VARIED_MOMENT) add_slope(t.part, k, W->u[axis][k][p], in->v, &sum->M[axis]);
+  for (int32_t a = axis + 1; a < dim; ++a) {
+    if (t.slopes) add_slope(t.part, k, w, in->L[a], &sum->L[a]);
+    if (t.moment) add_slope(t.part, k, w, in->M[a], &sum->M[a]);
+  }
+}
+
+MPMI_INLINE void keep_partial(int32_t dim, mpmi_taking t, const mpmi_partial *of, int64_t p,
+                              mpmi_gathered *out) {
+  mpmi_store4(out->v + 4 * p, mpmi_node_low(t.all, of->v));
+  if (t.values == 8) mpmi_store4(out->dv + 4 * p, mpmi_node_high(of->v));
+  if (t.slopes) store_columns(dim, t.part, of->L, p, out->L);
+  if (t.moment) store_columns(dim, t.part, of->M, p, out->M);
+}
+
+/* Gathers from a plane of nodes, or in 2-D or 1-D from all of them, what is common to the particles that
+ * differ along the first axis alone; for `ends` see gather_stencil(). */
+MPMI_INLINE void gather_plane(int32_t dim, int32_t width, mpmi_taking t, int32_t ends, const mpmi_weights *W,
+                              const double *inverse_spacing, int64_t p, const double *corner,
+                              mpmi_partial *plane) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, mid = dim >= 2 ? dim - 2 : 0;
-  const double *stencil = tile + (int64_t)values * W->node[p];
+  MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
+    if (dim < 2 && j > 0) break;
+    const double *node = corner + (int64_t)t.values * j * edge;
+    mpmi_partial row[2];
+    MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
+      const mpmi_partial at = {.v = mpmi_node_load(t.all, node + k * t.values)};
+      for (int32_t z = 0; z < ends; ++z)
+        add_partial(dim, width, t, W, inverse_spacing, last, k, p + MPMI_CLUSTER_END(dim, last, z), &at,
+                    &row[z]);
+    }
+    for (int32_t y = 0; y < (dim == 1 ? 1 : ends); ++y)
+      for (int32_t z = 0; z < ends; ++z)
+        if (dim == 1)
+          plane[z] = row[z];
+        else
+          add_partial(dim, width, t, W, inverse_spacing, mid, j, p + MPMI_CLUSTER_END(dim, mid, y), &row[z],
+                      &plane[2 * y + z]);
+  }
+}
+
+/* Gathers for particle p, or below three axes for the cluster that begins with it: `ends` is the number of
+ * particles along an axis. */
+MPMI_INLINE void gather_stencil(int32_t dim, int32_t width, int32_t form, int32_t ends, const mpmi_weights *W,
+                                const double *inverse_spacing, int64_t p, const double *tile,
+                                mpmi_gathered *out) {
+  const mpmi_taking t = taking_of(dim, form);
+  const int64_t stride = (int64_t)t.values * MPMI_TILE_EDGE(dim, width) * MPMI_TILE_EDGE(dim, width);
+  const double *stencil = tile + (int64_t)t.values * W->node[p];
   MPMI_SETTLE(stencil);
-  const mpmi_node zero = mpmi_node_zero();
-  mpmi_node v = zero, L[3] = {zero, zero, zero}, M[3] = {zero, zero, zero};    /* over the whole stencil, */
-  mpmi_node pv = zero, pL[3] = {zero, zero, zero}, pM[3] = {zero, zero, zero}; /* over a plane of rows, */
-  mpmi_node rv = zero, rL = zero, rM = zero;                                   /* over a row of nodes */
+  mpmi_partial whole[4], plane[4];
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
     if (dim < 3 && i > 0) break;
-    MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
-      if (dim < 2 && j > 0) break;
-      const double *node = stencil + (int64_t)values * ((i * edge + j) * (dim == 1 ? 0 : edge));
-      MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
-        const mpmi_node vi = mpmi_node_load(all, node + k * values);
-        add(all, part, even, width, k, W->w[last][k][p], vi, &rv, &rM);
-        if (slopes) add_slope(part, k, mpmi_gradient(dim, width, W, inverse_spacing, last, k, p), vi, &rL);
-        if (varied) add_slope(part, k, W->u[last][k][p], vi, &rM);
-      }
-      if (dim == 1) {
-        pv = rv, pL[last] = rL, pM[last] = rM;
-        continue;
-      }
-      const double w = W->w[mid][j][p];
-      add(all, part, even, width, j, w, rv, &pv, &pM[mid]);
-      if (slopes) add_slope(part, j, mpmi_gradient(dim, width, W, inverse_spacing, mid, j, p), rv, &pL[mid]);
-      if (slopes) add_slope(part, j, w, rL, &pL[last]);
-      if (varied) add_slope(part, j, W->u[mid][j][p], rv, &pM[mid]);
-      if (moment) add_slope(part, j, w, rM, &pM[last]);
-    }
-    if (dim < 3) {
-      v = pv;
-      for (int32_t k = 0; k < dim; ++k) L[k] = pL[k], M[k] = pM[k];
-      continue;
-    }
-    const double w = W->w[0][i][p];
-    add(all, part, even, width, i, w, pv, &v, &M[0]);
-    if (slopes) add_slope(part, i, mpmi_gradient(dim, width, W, inverse_spacing, 0, i, p), pv, &L[0]);
-    if (varied) add_slope(part, i, W->u[0][i][p], pv, &M[0]);
-    for (int32_t k = 1; k < dim; ++k) {
-      if (slopes) add_slope(part, i, w, pL[k], &L[k]);
-      if (moment) add_slope(part, i, w, pM[k], &M[k]);
-    }
+    gather_plane(dim, width, t, ends, W, inverse_spacing, p, stencil + i * stride, dim < 3 ? whole : plane);
+    if (dim == 3) add_partial(dim, width, t, W, inverse_spacing, 0, i, p, plane, whole);
   }
-  mpmi_store4(out->v + 4 * p, mpmi_node_low(all, v));
-  if (values == 8) mpmi_store4(out->dv + 4 * p, mpmi_node_high(v));
-  if (slopes) store_columns(dim, part, L, p, out->L);
-  if (moment) store_columns(dim, part, M, p, out->M);
+  for (int32_t y = 0; y < (dim == 2 ? ends : 1); ++y)
+    for (int32_t z = 0; z < ends; ++z) keep_partial(dim, t, &whole[2 * y + z], p + 2 * y + z, out);
+}
+
+/* A plane that waits for the others: parts of it in memory. */
+typedef struct mpmi_kept_plane {
+  _Alignas(64) double v[4][8], L[2][4][8], M[2][4][8];
+} mpmi_kept_plane;
+
+MPMI_INLINE void keep_plane(mpmi_taking t, const mpmi_partial *plane, mpmi_kept_plane *to) {
+  for (int32_t yz = 0; yz < 4; ++yz) {
+    mpmi_node_store(t.all, to->v[yz], plane[yz].v);
+    for (int32_t a = 0; a < 2 && t.slopes; ++a) mpmi_node_store(t.part, to->L[a][yz], plane[yz].L[a + 1]);
+    for (int32_t a = 0; a < 2 && t.moment; ++a) mpmi_node_store(t.part, to->M[a][yz], plane[yz].M[a + 1]);
+  }
+}
+MPMI_INLINE mpmi_partial kept_plane(mpmi_taking t, const mpmi_kept_plane *of, int32_t yz) {
+  mpmi_partial in = {.v = mpmi_node_load(t.all, of->v[yz])};
+  for (int32_t a = 0; a < 2; ++a) {
+    if (t.slopes) in.L[a + 1] = mpmi_node_load(t.part, of->L[a][yz]);
+    if (t.moment) in.M[a + 1] = mpmi_node_load(t.part, of->M[a][yz]);
+  }
+  return in;
+}
+
+/* Gathers for the cluster of 3-D that begins with particle p: its planes one after the other, because there
+ * are too few registers for eight sums of all. */
+MPMI_INLINE void gather_cluster(int32_t width, int32_t form, const mpmi_weights *W,
+                                const double *inverse_spacing, int64_t p, const double *tile,
+                                mpmi_gathered *out) {
+  const mpmi_taking t = taking_of(3, form);
+  const int64_t stride = (int64_t)t.values * MPMI_TILE_EDGE(3, width) * MPMI_TILE_EDGE(3, width);
+  const double *stencil = tile + (int64_t)t.values * W->node[p];
+  mpmi_kept_plane kept[MPMI_MAX_WIDTH];
+  for (int32_t i = 0; i < width; ++i) {
+    mpmi_partial plane[4];
+    gather_plane(3, width, t, 2, W, inverse_spacing, p, stencil + i * stride, plane);
+    keep_plane(t, plane, &kept[i]);
+  }
+  for (int32_t yz = 0; yz < 4; ++yz)
+    for (int32_t x = 0; x < 2; ++x) {
+      const int64_t first = p + MPMI_CLUSTER_END(3, 0, x);
+      mpmi_partial whole;
+      MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
+        const mpmi_partial plane = kept_plane(t, &kept[i], yz);
+        add_partial(3, width, t, W, inverse_spacing, 0, i, first, &plane, &whole);
+      }
+      keep_partial(3, t, &whole, first + yz, out);
+    }
 }
 
 /* Column k of C from its moments about the middle of the stencil. */
@@ -191,8 +267,26 @@ MPMI_INLINE void mask_holes(int32_t dim, int32_t width, int32_t form, const doub
     }
 }
 
-MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t begin,
-                              int64_t count) {
+/* Gathers for the clusters that a chunk begins with; returns the first particle that is in none. */
+MPMI_INLINE int64_t gather_clusters(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job,
+                                    int64_t s, const mpmi_weights *W, const double *inverse_spacing,
+                                    mpmi_gathered *out) {
+  const int64_t ahead = mpmi_ahead(&job->streams, s);
+  int64_t p = 0;
+  while (p < MPMI_CHUNK && mpmi_is_cluster(dim, &job->points, W, s + p, p)) {
+    if (dim == 3)
+      gather_cluster(width, form, W, inverse_spacing, p, job->tile, out);
+    else
+      gather_stencil(dim, width, form, 2, W, inverse_spacing, p, job->tile, out);
+    for (const int64_t end = p + MPMI_CLUSTER(dim); p < end; ++p) mpmi_prefetch(&job->streams, ahead, p);
+  }
+  return p;
+}
+typedef int64_t (*gather_clusters_fn)(const mpmi_gather *job, int64_t s, const mpmi_weights *W,
+                                      const double *inverse_spacing, mpmi_gathered *out);
+
+MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, gather_clusters_fn clusters,
+                              const mpmi_gather *job, int64_t begin, int64_t count) {
   mpmi_weights W;
   mpmi_gathered out;
   double inverse_spacing[3] = {0.0, 0.0, 0.0};
@@ -201,12 +295,14 @@ MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, const mp
   for (int64_t s = 0; s < count; s += MPMI_CHUNK) {
     const int64_t n = count - s < MPMI_CHUNK ? count - s : MPMI_CHUNK;
     job->weights(job->axis, job->need, &job->points, begin + s, n, &W);
-    if (has_hole(job->initial_volume + begin + s, n))
-      mask_holes(dim, width, form, job->initial_volume + begin + s, n, &W);
+    const int32_t hole = has_hole(job->initial_volume + begin + s, n);
+    if (hole) mask_holes(dim, width, form, job->initial_volume + begin + s, n, &W);
+    const int64_t first =
+        job->axis[0].still && !hole ? clusters(job, begin + s, &W, inverse_spacing, &out) : 0;
     const int64_t ahead = mpmi_ahead(&job->streams, begin + s);
-    for (int64_t p = 0; p < n; ++p) {
+    for (int64_t p = first; p < n; ++p) {
       mpmi_prefetch(&job->streams, ahead, p);
-      gather_particle(dim, width, form, &W, inverse_spacing, p, job->tile, &out);
+      gather_stencil(dim, width, form, 1, &W, inverse_spacing, p, job->tile, &out);
     }
     for (int64_t q = 0; q < mpmi_whole_chunks(n); q += MPMI_LANES)
       hand_on(dim, width, form, job, q, s + q, &W, &out, &made);
@@ -214,9 +310,14 @@ MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, const mp
   return (mpmi_taken){mpmi_move_flags(&made.moved), mpmi_deform_flags(&made.deformed)};
 }
 
+/* Clusters have a function of their own: within the loop they would take registers from other particles. */
 #define GATHER(dim, width, form, name)                                                                       \
+  static __attribute__((noinline)) int64_t KERNEL(name##_clusters)(                                          \
+      const mpmi_gather *job, int64_t s, const mpmi_weights *W, const double *inverse, mpmi_gathered *out) { \
+    return gather_clusters(dim, width, form, job, s, W, inverse, out);                                       \
+  }                                                                                                          \
   mpmi_taken KERNEL(name)(const mpmi_gather *job, int64_t begin, int64_t n);                                 \
   mpmi_taken KERNEL(name)(const mpmi_gather *job, int64_t begin, int64_t n) {                                \
-    return gather(dim, width, form, job, begin, n);                                                          \
+    return gather(dim, width, form, KERNEL(name##_clusters), job, begin, n);                                 \
   }
 #include "transfer/instances.h"

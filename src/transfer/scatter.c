@@ -11,6 +11,7 @@
 #include "material/pull_back.h"
 #include "simd/pack.h"
 #include "simd/tensor.h"
+#include "transfer/cluster.h"
 #include "transfer/plain.h"
 #include "transfer/scatter.h"
 
@@ -82,21 +83,27 @@ MPMI_INLINE int32_t has_halves(int32_t form) {
   return form == MPMI_SCATTER_8_HALVES || form == MPMI_SCATTER_8_AFFINE_HALVES;
 }
 
-/* Returns the momentum at node k of an axis, of that at the middle one and its growth per node; force, in the
- * upper half, stays. */
-MPMI_INLINE mpmi_node grown(int32_t width, int32_t part, int32_t moment, int32_t k, mpmi_node middle,
-                            mpmi_node growth) {
-  const int32_t steps = k - MPMI_MIDDLE(width);
-  if (moment != EVEN_MOMENT || steps == 0) return middle;
-  if (steps < 0) return mpmi_node_subtract_low(part, middle, growth);
-  mpmi_node value = mpmi_node_add_low(part, middle, growth);
-  return steps == 1 ? value : mpmi_node_add_low(part, value, growth);
+/* The node of an axis that momentum of a form is taken at: the middle one, but the first one with 4 values.
+ * */
+MPMI_INLINE int32_t base_of(int32_t width, int32_t form) {
+  return form == MPMI_SCATTER_4_AFFINE ? 0 : MPMI_MIDDLE(width);
 }
 
-/* Returns a + second weight * column; with 4 values there is only the momentum's. */
+/* Returns the momentum so many nodes of an axis away, of that at the base and its growth per node; force, in
+ * the upper half, stays. */
+MPMI_INLINE mpmi_node grown(int32_t part, int32_t moment, int32_t steps, mpmi_node base, mpmi_node growth) {
+  if (moment != EVEN_MOMENT || steps == 0) return base;
+  if (steps < 0) return mpmi_node_subtract_low(part, base, growth);
+  mpmi_node value = mpmi_node_add_low(part, base, growth);
+  if (steps > 1) value = mpmi_node_add_low(part, value, growth);
+  return steps > 2 ? mpmi_node_add_low(part, value, growth) : value;
+}
+
+/* Returns a + second weight * column; with 4 values there is only the momentum's, where nodes are uneven. */
 MPMI_INLINE mpmi_node add_second(int32_t dim, int32_t width, int32_t values, int32_t part, mpmi_node a,
                                  int32_t moment, const mpmi_weights *W, const double *inverse_spacing,
                                  int32_t axis, int32_t k, int64_t p, mpmi_node column) {
+  if (values == 4 && moment != UNEVEN_MOMENT) return a;
   if (values == 4) return mpmi_node_fma(part, a, W->u[axis][k][p], column);
   const double g = mpmi_gradient(dim, width, W, inverse_spacing, axis, k, p);
   if (moment == UNEVEN_MOMENT) return mpmi_node_fma_pair(part, a, mpmi_pair_of(W->u[axis][k][p], g), column);
@@ -133,47 +140,88 @@ MPMI_INLINE mpmi_node packed(int32_t form, const double *of, int32_t whole, int6
                           : mpmi_node_load(MPMI_BOTH, of + 8 * p);
 }
 
-/* Scatters mass, momentum and force, or with 4 values mass and affine momentum. Without an affine part the
- * columns have nothing to give to momentum. */
-MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W,
-                                     const double *inverse_spacing, int64_t p, const mpmi_first_order *of,
-                                     double *MPMI_APART stencil) {
-  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
+/* What a particle gives, or what has become of it over some axes: a value, and by axis a column. */
+typedef struct mpmi_giving {
+  mpmi_node value, column[3];
+} mpmi_giving;
+
+MPMI_INLINE mpmi_giving given_by(int32_t dim, int32_t form, const mpmi_first_order *of, int64_t p) {
+  const mpmi_node zero = mpmi_node_zero();
+  mpmi_giving in = {packed(form, of->a, 1, p), {zero, zero, zero}};
+  for (int32_t k = 0; k < dim && form != MPMI_SCATTER_4; ++k)
+    in.column[k] = packed(form, of->column[k], moment_of(form) != NO_MOMENT, p);
+  return in;
+}
+
+/* sum += what is given to node k of an axis by the weights of particle p; sum = that where it is the first.
+ * */
+MPMI_INLINE void add_given(int32_t dim, int32_t width, int32_t form, int32_t is_first, const mpmi_weights *W,
+                           const double *inverse_spacing, int32_t axis, int32_t k, int64_t p,
+                           const mpmi_giving *in, mpmi_giving *sum) {
   const int32_t values = form < MPMI_SCATTER_8 ? 4 : 8, moment = moment_of(form);
   const int32_t all = all_of(form), part = part_of(form);
-  const mpmi_node a = packed(form, of->a, 1, p);
-  mpmi_node column[3];
-  for (int32_t k = 0; k < dim; ++k) column[k] = packed(form, of->column[k], moment != NO_MOMENT, p);
-  /* sums over the axes before the last: node += w_k value + s_k slope */
-  mpmi_node plane = a, plane_1 = column[0], plane_2 = column[last], value = a, slope = column[last];
-  MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
-    if (dim < 3 && i > 0) break;
-    if (dim == 3) {
-      const double w = W->w[0][i][p];
-      plane = mpmi_node_scale(all, w, grown(width, part, moment, i, a, column[0]));
-      plane = add_second(dim, width, values, part, plane, moment, W, inverse_spacing, 0, i, p, column[0]);
-      plane_1 = mpmi_node_scale(part, w, column[1]);
-      plane_2 = mpmi_node_scale(part, w, column[2]);
-    }
+  const double w = W->w[axis][k][p];
+  const mpmi_node value = grown(part, moment, k - base_of(width, form), in->value, in->column[axis]);
+  sum->value = is_first ? mpmi_node_scale(all, w, value) : mpmi_node_fma(all, sum->value, w, value);
+  sum->value = add_second(dim, width, values, part, sum->value, moment, W, inverse_spacing, axis, k, p,
+                          in->column[axis]);
+  for (int32_t a = axis + 1; a < dim && form != MPMI_SCATTER_4; ++a)
+    sum->column[a] = is_first ? mpmi_node_scale(part, w, in->column[a])
+                              : mpmi_node_fma(part, sum->column[a], w, in->column[a]);
+}
+
+/* Scatters to planes of nodes of 3-D, or in 2-D and 1-D to all nodes, what particle p gives, or the cluster
+ * that begins with it: `ends` is the number of particles along an axis. Mass, momentum and force, or with 4
+ * values mass and momentum. Without an affine part the columns have nothing to give to momentum. */
+MPMI_INLINE void scatter_planes(int32_t dim, int32_t width, int32_t form, int32_t ends, int32_t begin,
+                                int32_t end, const mpmi_weights *W, const double *inverse_spacing, int64_t p,
+                                const mpmi_first_order *of, double *MPMI_APART stencil) {
+  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, mid = dim >= 2 ? dim - 2 : 0;
+  const int32_t values = form < MPMI_SCATTER_8 ? 4 : 8, all = all_of(form);
+  const mpmi_giving of_p = given_by(dim, form, of, p);
+  mpmi_giving plane[4], row[2]; /* sums over the first axis, and over the one but last */
+  MPMI_UNROLL for (int32_t i = begin; i < end; ++i) {
+    for (int32_t y = 0; y < (dim == 1 ? 1 : ends); ++y)
+      for (int32_t z = 0; z < ends; ++z)
+        for (int32_t x = 0; x < (dim == 3 ? ends : 1); ++x) {
+          const int64_t first = p + (dim == 3 ? MPMI_CLUSTER_END(dim, 0, x) : 0);
+          const mpmi_giving in = ends == 1 ? of_p : given_by(dim, form, of, first + 2 * y + z);
+          if (dim < 3)
+            plane[2 * y + z] = in;
+          else
+            add_given(dim, width, form, x == 0, W, inverse_spacing, 0, i, first, &in, &plane[2 * y + z]);
+        }
     MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
       if (dim < 2 && j > 0) break;
-      if (dim >= 2) {
-        const double w = W->w[dim - 2][j][p];
-        value = mpmi_node_scale(all, w, grown(width, part, moment, j, plane, plane_1));
-        value =
-            add_second(dim, width, values, part, value, moment, W, inverse_spacing, dim - 2, j, p, plane_1);
-        slope = mpmi_node_scale(part, w, plane_2);
-      }
+      for (int32_t z = 0; z < ends; ++z)
+        for (int32_t y = 0; y < (dim == 1 ? 1 : ends); ++y)
+          if (dim == 1)
+            row[z] = plane[z];
+          else
+            add_given(dim, width, form, y == 0, W, inverse_spacing, mid, j, p + MPMI_CLUSTER_END(dim, mid, y),
+                      &plane[2 * y + z], &row[z]);
       double *node = stencil + values * (i * edge + j) * (dim == 1 ? 0 : edge);
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
-        mpmi_node q = mpmi_node_load(all, node + values * k);
-        q = mpmi_node_fma(all, q, W->w[last][k][p], grown(width, part, moment, k, value, slope));
-        mpmi_node_store(
-            all, node + values * k,
-            add_second(dim, width, values, part, q, moment, W, inverse_spacing, last, k, p, slope));
+        mpmi_giving sum = {.value = mpmi_node_load(all, node + values * k)};
+        for (int32_t z = 0; z < ends; ++z)
+          add_given(dim, width, form, 0, W, inverse_spacing, last, k, p + MPMI_CLUSTER_END(dim, last, z),
+                    &row[z], &sum);
+        mpmi_node_store(all, node + values * k, sum.value);
       }
     }
   }
+}
+
+/* Scatters to the whole stencil. Clusters of 3-D go plane by plane, which makes their code smaller by half
+ * and costs no time. */
+MPMI_INLINE void scatter_stencil(int32_t dim, int32_t width, int32_t form, int32_t ends,
+                                 const mpmi_weights *W, const double *inverse_spacing, int64_t p,
+                                 const mpmi_first_order *of, double *stencil) {
+  if (dim == 3 && ends > 1)
+    for (int32_t i = 0; i < width; ++i)
+      scatter_planes(dim, width, form, ends, i, i + 1, W, inverse_spacing, p, of, stencil);
+  else
+    scatter_planes(dim, width, form, ends, 0, dim == 3 ? width : 1, W, inverse_spacing, p, of, stencil);
 }
 
 /* Returns a + second weight * column of momentum and force together. */
@@ -187,32 +235,62 @@ MPMI_INLINE mpmi_v4 add_flat_second(int32_t dim, int32_t width, mpmi_v4 a, int32
   return mpmi_fma_pair4(a, u, g, column);
 }
 
-/* Scatters momentum and force of 1-D or 2-D to the nodes of a stencil, and mass to theirs, row by row. */
-MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t moment, const mpmi_weights *W,
+/* What a particle of 1-D or 2-D gives, or what has become of it over an axis: momentum and force, mass, and
+ * by axis a column. */
+typedef struct mpmi_flat_giving {
+  mpmi_v4 value, column[2];
+  double mass;
+} mpmi_flat_giving;
+
+MPMI_INLINE mpmi_flat_giving flat_given_by(int32_t dim, const mpmi_first_order *of, const double *mass,
+                                           int64_t p) {
+  const mpmi_v4 first = mpmi_load4(of->column[0] + 4 * p);
+  return (mpmi_flat_giving){
+      mpmi_load4(of->a + 4 * p), {first, dim == 2 ? mpmi_load4(of->column[1] + 4 * p) : first}, mass[p]};
+}
+
+/* Scatters momentum and force of 1-D or 2-D to the nodes of a stencil, and mass to theirs, row by row: those
+ * of particle p, or of the cluster that begins with it, `ends` along an axis. */
+MPMI_INLINE void scatter_flat(int32_t dim, int32_t width, int32_t moment, int32_t ends, const mpmi_weights *W,
                               const double *inverse_spacing, int64_t p, const mpmi_first_order *of,
-                              double mass, double *MPMI_APART stencil, double *MPMI_APART masses) {
+                              const double *mass, double *MPMI_APART stencil, double *MPMI_APART masses) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
-  const mpmi_v4 a = mpmi_load4(of->a + 4 * p), column = mpmi_load4(of->column[0] + 4 * p);
-  mpmi_v4 value = a, slope = mpmi_load4(of->column[last] + 4 * p);
-  const mpmi_v4 step = slope,
-                weights = mpmi_set4(W->w[last][0][p], W->w[last][1][p], width > 2 ? W->w[last][2][p] : 0.0,
-                                    width > 3 ? W->w[last][3][p] : 0.0);
-  double row_mass = mass;
+  const mpmi_flat_giving of_p = flat_given_by(dim, of, mass, p);
+  mpmi_v4 weights[2];
+  for (int32_t z = 0; z < ends; ++z)
+    weights[z] = mpmi_set4(W->w[last][0][p + z], W->w[last][1][p + z], width > 2 ? W->w[last][2][p + z] : 0.0,
+                           width > 3 ? W->w[last][3][p + z] : 0.0);
   MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
     if (dim < 2 && j > 0) break;
-    if (dim == 2) {
-      const double w = W->w[0][j][p];
-      value = add_flat_second(dim, width, mpmi_scale4(w, a), moment, W, inverse_spacing, 0, j, p, column);
-      slope = mpmi_scale4(w, step);
-      row_mass = w * mass;
-    }
     double *node = stencil + 4 * j * edge, *row = masses + j * edge;
+    mpmi_flat_giving given[2];
+    for (int32_t z = 0; z < ends; ++z)
+      for (int32_t y = 0; y < (dim == 2 ? ends : 1); ++y) {
+        const int64_t at = p + (dim == 2 ? MPMI_CLUSTER_END(2, 0, y) : 0) + z;
+        const mpmi_flat_giving in = ends == 1 ? of_p : flat_given_by(dim, of, mass, at);
+        if (dim == 1) {
+          given[z] = in;
+          continue;
+        }
+        const double w = W->w[0][j][at];
+        const mpmi_v4 value = y ? mpmi_fma4(given[z].value, w, in.value) : mpmi_scale4(w, in.value);
+        given[z].value =
+            add_flat_second(dim, width, value, moment, W, inverse_spacing, 0, j, at, in.column[0]);
+        given[z].column[1] =
+            y ? mpmi_fma4(given[z].column[1], w, in.column[1]) : mpmi_scale4(w, in.column[1]);
+        given[z].mass = y ? given[z].mass + w * in.mass : w * in.mass;
+      }
     MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
-      const mpmi_v4 q = mpmi_fma4(mpmi_load4(node + 4 * k), W->w[last][k][p], value);
-      mpmi_store4(node + 4 * k,
-                  add_flat_second(dim, width, q, moment, W, inverse_spacing, last, k, p, slope));
+      mpmi_v4 q = mpmi_load4(node + 4 * k);
+      for (int32_t z = 0; z < ends; ++z) {
+        q = mpmi_fma4(q, W->w[last][k][p + z], given[z].value);
+        q = add_flat_second(dim, width, q, moment, W, inverse_spacing, last, k, p + z, given[z].column[last]);
+      }
+      mpmi_store4(node + 4 * k, q);
     }
-    mpmi_store4(row, mpmi_fma4(mpmi_load4(row), row_mass, weights));
+    mpmi_v4 sum = mpmi_load4(row);
+    for (int32_t z = 0; z < ends; ++z) sum = mpmi_fma4(sum, given[z].mass, weights[z]);
+    mpmi_store4(row, sum);
   }
 }
 
@@ -338,10 +416,45 @@ MPMI_INLINE void give(int32_t dim, int32_t width, int32_t form, int32_t total, c
   }
 }
 
-MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t begin,
-                         int64_t end) {
-  const int64_t values = form >= MPMI_SCATTER_8 && !is_flat(form) ? 8 : 4;
-  double *masses = mpmi_flat_masses(dim, width, job->tile);
+/* Returns the first node of the stencil of particle p. */
+MPMI_INLINE double *stencil_of(int32_t form, const mpmi_scatter *job, const mpmi_weights *W, int64_t p) {
+  double *stencil = job->tile + (form >= MPMI_SCATTER_8 && !is_flat(form) ? 8 : 4) * (int64_t)W->node[p];
+  MPMI_SETTLE(stencil);
+  return stencil;
+}
+
+/* Adds to the tile what particle p of the chunk from slot s on gives, or the cluster that begins with it. */
+MPMI_INLINE void scatter_given(int32_t dim, int32_t width, int32_t form, int32_t ends,
+                               const mpmi_scatter *job, const mpmi_weights *W, const double *inverse_spacing,
+                               int64_t s, int64_t p, const mpmi_first_order *of, double *stencil) {
+  if (is_flat(form))
+    scatter_flat(dim, width, moment_of(form), ends, W, inverse_spacing, p, of, job->mass + s, stencil,
+                 mpmi_flat_masses(dim, width, job->tile) + W->node[p]);
+  else if (form == MPMI_SCATTER_4 && ends == 1)
+    mpmi_scatter_plain(dim, width, W, p, of->a + 4 * p, stencil);
+  else if (form == MPMI_SCATTER_4_AFFINE && ends == 1)
+    scatter_linear(dim, width, W, p, of, stencil);
+  else
+    scatter_stencil(dim, width, form, ends, W, inverse_spacing, p, of, stencil);
+}
+
+/* Scatters what the clusters give that a chunk begins with; returns the first particle that is in none. */
+MPMI_INLINE int64_t scatter_clusters(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job,
+                                     int64_t s, const mpmi_weights *W, const double *inverse_spacing,
+                                     const mpmi_first_order *of) {
+  const int64_t ahead = mpmi_ahead(&job->streams, s);
+  int64_t p = 0;
+  while (p < MPMI_CHUNK && mpmi_is_cluster(dim, &job->points, W, s + p, p)) {
+    scatter_given(dim, width, form, 2, job, W, inverse_spacing, s, p, of, stencil_of(form, job, W, p));
+    for (const int64_t end = p + MPMI_CLUSTER(dim); p < end; ++p) mpmi_prefetch(&job->streams, ahead, p);
+  }
+  return p;
+}
+typedef int64_t (*scatter_clusters_fn)(const mpmi_scatter *job, int64_t s, const mpmi_weights *W,
+                                       const double *inverse_spacing, const mpmi_first_order *of);
+
+MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, scatter_clusters_fn clusters,
+                         const mpmi_scatter *job, int64_t begin, int64_t end) {
   const mpmi_stress_rows stress = stress_rows(dim, job);
   mpmi_weights W;
   mpmi_first_order of;
@@ -354,27 +467,25 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
       give(dim, width, form, 1, job, &stress, s, n, &W, &of);
     else
       give(dim, width, form, 0, job, &stress, s, n, &W, &of);
+    const int64_t first = job->axis[0].still ? clusters(job, s, &W, inverse_spacing, &of) : 0;
     const int64_t ahead = mpmi_ahead(&job->streams, s);
-    for (int64_t p = 0; p < n; ++p) {
-      double *stencil = job->tile + values * W.node[p];
-      MPMI_SETTLE(stencil);
+    for (int64_t p = first; p < n; ++p) {
+      double *stencil = stencil_of(form, job, &W, p);
       mpmi_prefetch(&job->streams, ahead, p);
-      if (form == MPMI_SCATTER_4)
-        mpmi_scatter_plain(dim, width, &W, p, of.a + 4 * p, stencil);
-      else if (form == MPMI_SCATTER_4_AFFINE)
-        scatter_linear(dim, width, &W, p, &of, stencil);
-      else if (is_flat(form))
-        scatter_flat(dim, width, moment_of(form), &W, inverse_spacing, p, &of, job->mass[s + p], stencil,
-                     masses + W.node[p]);
-      else
-        scatter_first_order(dim, width, form, &W, inverse_spacing, p, &of, stencil);
+      scatter_given(dim, width, form, 1, job, &W, inverse_spacing, s, p, &of, stencil);
     }
   }
 }
 
+/* Clusters have a function of their own: within the loop they would take registers from other particles. */
 #define SCATTER(dim, width, form, name)                                                                      \
+  static __attribute__((noinline)) int64_t KERNEL(name##_clusters)(                                          \
+      const mpmi_scatter *job, int64_t s, const mpmi_weights *W, const double *inverse,                      \
+      const mpmi_first_order *of) {                                                                          \
+    return scatter_clusters(dim, width, form, job, s, W, inverse, of);                                       \
+  }                                                                                                          \
   void KERNEL(name)(const mpmi_scatter *job, int64_t begin, int64_t end);                                    \
   void KERNEL(name)(const mpmi_scatter *job, int64_t begin, int64_t end) {                                   \
-    scatter(dim, width, form, job, begin, end);                                                              \
+    scatter(dim, width, form, KERNEL(name##_clusters), job, begin, end);                                     \
   }
 #include "transfer/instances.h"

@@ -192,6 +192,7 @@ enum {
   HEAT_IMPLICIT,
   HOLDING,
   SLIDING,
+  TOTAL_LATTICE,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -248,6 +249,7 @@ static const option options[OPTIONS] = {
     [SLIDING] = {"surface to slide along, saved and loaded", 1, 1, 0},
     [HEAT] = {"heat, expansion, dissipation, saved and loaded", 1, 1, 1},
     [HEAT_IMPLICIT] = {"heat, implicit conduction, saved and loaded", 1, 1, 1},
+    [TOTAL_LATTICE] = {"total Lagrangian, a lattice, saved and loaded", 1, 1, 0},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -312,6 +314,7 @@ static void apply(scene *is, int32_t o) {
                                          [SLIDING] = STORY_SAVED,
                                          [HEAT] = STORY_SAVED,
                                          [HEAT_IMPLICIT] = STORY_SAVED,
+                                         [TOTAL_LATTICE] = STORY_SAVED,
                                          [ADVANCE] = STORY_ADVANCE,
                                          [FAILING] = STORY_FAILING,
                                          [CHANGED] = STORY_CHANGED};
@@ -324,7 +327,8 @@ static void apply(scene *is, int32_t o) {
   is->story = story[o];
   is->solver = solver[o];
   is->remedy = o == REMEDY || o == REMEDY_OF_SOIL || (o == TOTAL_SETS && is->dim > 1);
-  is->total = o == TOTAL || o == TOTAL_SETS;
+  is->total = o == TOTAL || o == TOTAL_SETS || o == TOTAL_LATTICE;
+  is->lattice = o == TOTAL_LATTICE;
   is->reference = o == REFERENCE;
   is->large = o == MULTIGRID;
   if (is->large) is->steps = 2;

@@ -163,14 +163,15 @@ static void make_material(world *w, int32_t m) {
   }
 }
 
-/* Two particles on each axis in a cell, off their lattice; the body moves, turns, and all of it differs. */
+/* Two particles on each axis in a cell, off their lattice but where that is asked for; the body moves, turns,
+ * and all of it differs. */
 static void place(const scene *is, const int64_t *at, const int64_t *first, int64_t id, double *x,
                   double *v) {
   double middle[3] = {0.0, 0.0, 0.0};
   for (int32_t k = 0; k < is->dim; ++k) {
     const uint64_t seed = (uint64_t)(6 * id + 2 * k);
-    const double cell =
-        (double)first[k] + 0.5 * (double)at[k] + (is->quasi_static ? 0.13 : 0.25 + 0.1 * noise(seed));
+    const double off = is->lattice ? 0.25 : is->quasi_static ? 0.13 : 0.25 + 0.1 * noise(seed);
+    const double cell = (double)first[k] + 0.5 * (double)at[k] + off;
     x[k] = corner(is, k) + spacing[k] * cell;
     middle[k] = 0.1 * (double)at[k] - 0.3;
   }

@@ -60,7 +60,8 @@ enum {
 
 typedef struct scene {
   char name[96];
-  int32_t dim, geometry, total, basis, boundary, scheme, quasi_static, transfer, xpic_order, xpic_every;
+  int32_t dim, geometry, total, lattice, basis, boundary, scheme, quasi_static, transfer, xpic_order,
+      xpic_every;
   double smoothing, flip, pic_damping;
   int32_t law[2]; /* of the sets; LAW_NONE for no second one */
   int32_t position_order, staggered, remedy, reference, zero_acceleration, projected, damped;

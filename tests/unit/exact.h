@@ -5,6 +5,7 @@
 #include "world.h"
 
 TCase *basis_case(void);
+TCase *clusters_case(void);
 TCase *kernels_case(void);
 TCase *conservation_case(void);
 TCase *patch_case(void);

@@ -188,6 +188,7 @@ Suite *exact_suite(void) {
   tcase_add_loop_test(motion, single_particle_oscillates, 0, 2);
   suite_add_tcase(suite, basis_case());
   suite_add_tcase(suite, kernels_case());
+  suite_add_tcase(suite, clusters_case());
   suite_add_tcase(suite, weights_case());
   suite_add_tcase(suite, conservation_case());
   suite_add_tcase(suite, motion);

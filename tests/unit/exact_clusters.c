@@ -1,0 +1,284 @@
+/* Clusters: kernels take particles of them together and give what they give one by one; and sorts put them in
+ * front of the other particles of a block. */
+#include "exact.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "particles/clusters.h"
+#include "transfer/kernels.h"
+
+/* ---- kernels ------------------------------------------------------------------------------------------ */
+static const double spacing = 0.25;
+enum { N = 6 * MPMI_CHUNK, MOST = 16 * 16 * 16, ROWS = 3 + 3 + 2 + 6 + 9 + 3 };
+enum { WHOLE, MOVED, ELSEWHERE, OF_OTHER_SIZE, KINDS }; /* what has been done to a cluster */
+
+/* Clusters of particles of random stencils, some of which have one particle that does not fit. Sizes are all
+ * the same but for those of a particle of another size. */
+static void throw_clusters(int32_t dim, int32_t width, dice *d, double (*row)[N]) {
+  const int32_t size = 1 << dim;
+  for (int32_t r = 0; r < ROWS; ++r)
+    for (int32_t p = 0; p < N; ++p) row[r][p] = r < 23 ? throw_between(d, r < 6 ? -1.0 : 0.5, 1.0) : 0.1;
+  for (int32_t begin = 0; begin < N; begin += size) {
+    const int32_t odd = (int32_t)throw_between(d, 0.0, size), axis = (int32_t)throw_between(d, 0.0, dim);
+    for (int32_t k = 0; k < dim; ++k) {
+      const double cell = floor(throw_between(d, 1.0, 4.0)) + (width == 3 ? 0.5 : 0.0);
+      const double end[2] = {cell + throw_between(d, 0.05, 0.45), cell + throw_between(d, 0.55, 0.95)};
+      for (int32_t i = 0; i < size; ++i) row[k][begin + i] = spacing * end[i >> (dim - 1 - k) & 1];
+    }
+    switch (begin / size % KINDS) {
+    case MOVED:
+      row[axis][begin + odd] += 1e-3 * spacing;
+      break;
+    case ELSEWHERE:
+      row[axis][begin + odd] += spacing;
+      break;
+    case OF_OTHER_SIZE:
+      row[23 + axis][begin + odd] = 0.15;
+      break;
+    default:
+      break;
+    }
+  }
+}
+
+/* The particles of throw_clusters() on a grid where they stay, or where they could move. */
+static mpmi_scatter scatter_of(const mpmi_kernels *kernels, int32_t dim, int32_t width, int32_t gimp,
+                               int32_t still, const double (*row)[N]) {
+  mpmi_scatter job = {.weights = kernels->weights[gimp ? MPMI_FAMILY_GIMP : width - 2][dim],
+                      .need = MPMI_NEED_GRADIENT | MPMI_NEED_MOMENT,
+                      .mass = row[6],
+                      .volume = row[7],
+                      .fused_dt = 0.01,
+                      .streams = {.end = N}};
+  for (int32_t k = 0; k < dim; ++k) {
+    job.axis[k] = (mpmi_axis){.spacing = spacing,
+                              .inverse_spacing = 1.0 / spacing,
+                              .last_cell = 9.0,
+                              .middle = 8.5,
+                              .still = still};
+    job.points.x[k] = row[k], job.v[k] = row[3 + k], job.gravity[k] = -9.81;
+    if (gimp) job.points.size[k] = row[23 + k];
+  }
+  for (int32_t c = 0; c < 6; ++c) job.stress[c] = row[8 + c];
+  for (int32_t c = 0; c < 9; ++c) job.affine[c] = row[14 + c];
+  return job;
+}
+
+enum { ISAS = 4, SETTINGS = 3 * 4 }; /* settings: by dim; widths 2 to 4, and GIMP */
+
+static int32_t width_of(int32_t setting) {
+  return setting / 3 < 3 ? 2 + setting / 3 : 3;
+}
+
+START_TEST(clusters_give_what_their_particles_do) {
+  static double row[ROWS][N], tile[2][8 * MOST];
+  const int32_t isa = MPM_ISA_BASELINE + _i % ISAS, setting = _i / ISAS;
+  const int32_t dim = 1 + setting % 3, width = width_of(setting), gimp = setting / 3 == 3;
+  if (!has_isa(isa)) return;
+  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  dice d = {31 + (uint64_t)_i};
+  throw_clusters(dim, width, &d, row);
+  for (int32_t form = 0; form < MPMI_SCATTER_FORMS; ++form) {
+    if (!kernels->scatter[dim][width][form]) continue;
+    memset(tile, 0, sizeof tile);
+    for (int32_t still = 0; still < 2; ++still) {
+      mpmi_scatter job = scatter_of(kernels, dim, width, gimp, still, (const double(*)[N])row);
+      job.tile = tile[still];
+      kernels->scatter[dim][width][form](&job, 0, N);
+    }
+    char name[60];
+    snprintf(name, sizeof name, "%d-D, width %d, form %d", (int)dim, (int)width, (int)form);
+    const double most = largest(8 * MOST, tile[0]);
+    ck_assert_double_gt(most, 1.0);
+    for (int32_t i = 0; i < 8 * MOST; ++i) ck_within(name, tile[1][i], tile[0][i], 1e-14 * most);
+    /* above one axis sums have another order, and digits show that clusters were taken as such */
+    ck_assert_int_eq(memcmp(tile[0], tile[1], sizeof tile[0]) != 0, dim > 1);
+  }
+}
+END_TEST
+
+/* What a cluster takes has the same sums in the same order. Some chunks have a hole. */
+START_TEST(clusters_take_what_their_particles_do) {
+  static double row[ROWS][N], tile[8 * MOST], taken[2][24][N], volume[N];
+  const int32_t isa = MPM_ISA_BASELINE + _i % ISAS, setting = _i / ISAS;
+  const int32_t dim = 1 + setting % 3, width = width_of(setting), gimp = setting / 3 == 3;
+  if (!has_isa(isa)) return;
+  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  dice d = {67 + (uint64_t)_i};
+  throw_clusters(dim, width, &d, row);
+  for (int32_t i = 0; i < 8 * MOST; ++i) tile[i] = throw_between(&d, -1.0, 1.0);
+  for (int32_t p = 0; p < N; ++p) volume[p] = p % 43 == 42 ? 0.0 : 1.0;
+  for (int32_t form = 0; form < MPMI_GATHER_FORMS; ++form) {
+    memset(taken, 0, sizeof taken);
+    for (int32_t still = 0; still < 2; ++still) {
+      const mpmi_scatter of = scatter_of(kernels, dim, width, gimp, still, (const double(*)[N])row);
+      mpmi_gather job = {.weights = of.weights,
+                         .need = of.need,
+                         .points = of.points,
+                         .initial_volume = volume,
+                         .tile = tile,
+                         .ld = N,
+                         .v = taken[still][0],
+                         .dv = taken[still][3],
+                         .streams = {.end = N}};
+      for (int32_t k = 0; k < dim; ++k) job.axis[k] = of.axis[k];
+      for (int32_t e = 0; e < 9; ++e) job.L[e] = taken[still][6 + e], job.C[e] = taken[still][15 + e];
+      kernels->gather[dim][width][form](&job, 0, N);
+    }
+    ck_assert_double_gt(largest(24 * N, taken[0][0]), 0.1);
+    ck_assert(memcmp(taken[0], taken[1], sizeof taken[0]) == 0);
+  }
+}
+END_TEST
+
+/* ---- order -------------------------------------------------------------------------------------------- */
+/* Returns whether the particles in some slots are a cluster of cells of the quadratic basis. */
+static int32_t is_cluster(const mpm_particles *set, int32_t dim, int64_t slot) {
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  for (int32_t i = 0; i < 1 << dim; ++i) {
+    if (id[slot + i] < 0) return 0;
+    for (int32_t k = 0; k < dim; ++k) {
+      const double *x = mpmi_places(set, 0) + k * set->ld + slot;
+      const int32_t end = i & 1 << (dim - 1 - k);
+      if (x[i] != x[end] || llround(x[i]) != llround(x[0]) || (end && !(x[end] > x[0]))) return 0;
+    }
+  }
+  return 1;
+}
+
+/* Counts the clusters of a set, in as many slots as a cluster has. */
+static int64_t clusters_of(const mpm_particles *set, int32_t dim) {
+  int64_t n = 0;
+  for (int64_t s = 0; s < set->slots; s += 1 << dim) n += is_cluster(set, dim, s);
+  return n;
+}
+
+static void shuffle(int64_t n, int64_t *order, dice *d) {
+  for (int64_t i = 0; i < n; ++i) order[i] = i;
+  for (int64_t i = n - 1; i > 0; --i) {
+    const int64_t j = (int64_t)throw_between(d, 0.0, (double)(i + 1)), swap = order[i];
+    order[i] = order[j], order[j] = swap;
+  }
+}
+
+/* Adds a lattice of side^dim particles in random order, per_cell along an axis of a cell; the last one stands
+ * twice. */
+static void add_lattice(world *w, mpm_particles *set, int64_t side, int32_t per_cell) {
+  const int32_t dim = w->dim;
+  int64_t n = 1;
+  for (int32_t k = 0; k < dim; ++k) n *= side;
+  double *x = malloc((size_t)(dim * (n + 1)) * sizeof *x), *volume = malloc((size_t)(n + 1) * sizeof *volume);
+  int64_t *order = malloc((size_t)n * sizeof *order);
+  dice d = {5 + (uint64_t)dim};
+  shuffle(n, order, &d);
+  for (int64_t i = 0; i <= n; ++i) {
+    volume[i] = pow(1.0 / per_cell, dim);
+    for (int32_t k = 0; k < dim; ++k) {
+      int64_t at = i < n ? order[i] : n - 1;
+      for (int32_t a = 0; a < k; ++a) at /= side;
+      x[k * (n + 1) + i] = 4.5 + ((double)(at % side) + 0.5) / per_cell;
+    }
+  }
+  ck_ok(w, mpm_particles_add(set, n + 1, x, NULL, volume, NULL, NULL, NULL));
+  free(x), free(volume), free(order);
+}
+
+static mpm_particles *open_lattice(world *w, int32_t dim, int32_t lagrangian, int64_t side,
+                                   int32_t per_cell) {
+  world_desc desc = world_default(dim, 24, 1.0);
+  desc.grid.total_lagrangian = lagrangian;
+  mpm_particles *set = world_open(w, &desc);
+  add_lattice(w, set, side, per_cell);
+  world_step(w, 1e-3);
+  return set;
+}
+
+/* A lattice that begins in the middle of a cell, where stencils of the quadratic basis do: all of its
+ * stencils are full. */
+START_TEST(sorts_put_clusters_in_front) {
+  const int32_t dim = 1 + _i % 3, per_cell = 2 + 2 * (_i / 3);
+  const int64_t cells = 9, side = cells * per_cell, pairs = side / 2;
+  world w;
+  mpm_particles *set = open_lattice(&w, dim, 1, side, per_cell);
+  int64_t expected = 1;
+  for (int32_t k = 0; k < dim; ++k) expected *= pairs;
+  ck_assert_int_eq(clusters_of(set, dim), expected);
+  /* without one of its particles a cluster is none, and the others stay; so they do in another sort */
+  const int64_t id[] = {mpmi_i64(set, MPMI_ID, 0)[0]};
+  ck_ok(&w, mpm_particles_remove(set, 1, id));
+  for (int32_t i = 0; i < 2; ++i) {
+    world_step(&w, 1e-3);
+    ck_assert_int_eq(clusters_of(set, dim), expected - 1);
+    const double far[3] = {15.3, 15.3, 15.3}, volume[] = {1e-3};
+    ck_ok(&w, mpm_particles_add(set, 1, far, NULL, volume, NULL, NULL, NULL));
+  }
+  world_close(&w);
+}
+END_TEST
+
+/* What has been taken out of a cluster leaves the others in the order that any sort gives them: a state that
+ * is loaded goes on with the same bits. */
+START_TEST(broken_clusters_go_on) {
+  const int32_t dim = 1 + _i;
+  world w, other;
+  world_desc desc = world_default(dim, 24, 1.0);
+  desc.grid.total_lagrangian = 1;
+  mpm_particles *set = open_lattice(&w, dim, 1, 18, 2);
+  const int64_t id[] = {3, 8, 15};
+  for (int32_t k = 0; k < 3; ++k) {
+    const double pull[3] = {0.02 * (k + 1), -0.01, 0.03};
+    double *v = fetch(&w, set, "velocity", dim), *x = fetch(&w, set, "position", dim);
+    const int64_t n = mpm_particles_count(set);
+    for (int64_t i = 0; i < dim * n; ++i) v[i] += pull[i / n] * sin(0.7 * x[i]);
+    put(&w, set, "velocity", dim, v);
+    free(v), free(x);
+    ck_ok(&w, mpm_particles_remove(set, 1, &id[k]));
+    world_open(&other, &desc);
+    world_copy(&w, &other);
+    for (int32_t i = 0; i < 3; ++i) {
+      world_step(&w, 0.1);
+      world_step(&other, 0.1);
+      ck_assert_uint_eq(world_hash(&w), world_hash(&other));
+    }
+    ck_assert_int_eq(clusters_of(set, dim), clusters_of(other.set[0], dim));
+    world_close(&other);
+  }
+  world_close(&w);
+}
+END_TEST
+
+/* Particles that move have no such order, and three along an axis have one cluster in each cell. */
+START_TEST(sorts_leave_others_in_order) {
+  const int32_t dim = 1 + _i;
+  world w;
+  mpm_particles *set = open_lattice(&w, dim, 0, 18, 2);
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  int64_t followers = 0;
+  for (int64_t s = 1; s < set->slots; ++s) {
+    int32_t block[2][3] = {{0}};
+    for (int32_t i = 0; i < 2; ++i)
+      mpmi_blocks_of_position(set->grid, mpmi_places(set, 0) + s - i, set->ld, MPMI_BLOCK_EDGE(dim),
+                              block[i]);
+    if (id[s] < 0 || id[s - 1] < 0 || memcmp(block[0], block[1], sizeof *block) != 0) continue;
+    ck_holds(id[s] > id[s - 1]);
+    ++followers;
+  }
+  ck_assert_int_gt(followers, set->count / 2);
+  world_close(&w);
+  set = open_lattice(&w, dim, 1, 27, 3);
+  const int64_t cells[] = {9, 81, 729};
+  ck_assert_int_ge(clusters_of(set, dim), cells[_i]);
+  world_close(&w);
+}
+END_TEST
+
+TCase *clusters_case(void) {
+  TCase *tc = tcase_create("clusters");
+  tcase_add_loop_test(tc, clusters_give_what_their_particles_do, 0, ISAS * SETTINGS);
+  tcase_add_loop_test(tc, clusters_take_what_their_particles_do, 0, ISAS * SETTINGS);
+  tcase_add_loop_test(tc, sorts_put_clusters_in_front, 0, 6);
+  tcase_add_loop_test(tc, broken_clusters_go_on, 0, 3);
+  tcase_add_loop_test(tc, sorts_leave_others_in_order, 0, 3);
+  return tc;
+}
