@@ -42,7 +42,7 @@ typedef struct candidate {
   uint32_t slot;
 } candidate;
 
-/* Lists the particles of a stencil by cluster and place; others alike stay in order. */
+/* Lists the particles of a stencil by cluster and place. Those that share a place stay in order. */
 static void list_candidates(const mpm_particles *set, int32_t n, const uint32_t *slot, candidate *list) {
   int32_t cluster[MOST_OF_STENCIL] = {0}, place[MOST_OF_STENCIL] = {0}, rank[MOST_OF_STENCIL];
   for (int32_t k = 0; k < set->grid->dim; ++k) {

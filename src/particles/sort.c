@@ -88,7 +88,7 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_so
   const uint32_t *of_slot = blocks_of_slots(set);
   mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
   if (status) return status;
-  /* clusters are first in their blocks whoever has come and gone: what is behind them goes by id */
+  /* the order of particles that stay is a function of places and ids alone, whoever has come and gone */
   const int32_t stay = mpmi_is_total_lagrangian(set->grid);
   const int32_t by_id = (stay || set->dirty & (MPMI_DIRTY_ORDER | MPMI_DIRTY_IDS)) &&
                         (sorting->tail_low || !mpmi_ids_ascend(set));

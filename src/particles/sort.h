@@ -1,5 +1,5 @@
 /* A set is sorted by blocks, and the sort is stable, so that the order is a function of the state alone. On
- * total Lagrangian grids clusters come first in each block, and other particles by stencil and id. */
+ * total Lagrangian grids clusters come first in each block (particles/clusters.h). */
 #ifndef MPMI_SORT_H
 #define MPMI_SORT_H
 

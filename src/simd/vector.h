@@ -253,6 +253,7 @@ MPMI_INLINE mpmi_node mpmi_node_add_low(int32_t part, mpmi_node a, mpmi_node b) 
   return mpmi_node_of8(_mm512_mask_add_pd(a.eight, 0x0f, a.eight, mpmi_node_round(part, b).eight));
 }
 MPMI_INLINE mpmi_node mpmi_node_subtract_low(int32_t part, mpmi_node a, mpmi_node b) {
+  if (part == MPMI_LOW) return mpmi_node_of4(a.four - mpmi_round4(b.four));
   if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(a.four - mpmi_round4(b.four), a.high);
   return mpmi_node_of8(_mm512_mask_sub_pd(a.eight, 0x0f, a.eight, mpmi_node_round(part, b).eight));
 }

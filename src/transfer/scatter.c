@@ -83,8 +83,7 @@ MPMI_INLINE int32_t has_halves(int32_t form) {
   return form == MPMI_SCATTER_8_HALVES || form == MPMI_SCATTER_8_AFFINE_HALVES;
 }
 
-/* The node of an axis that momentum of a form is taken at: the middle one, but the first one with 4 values.
- * */
+/* Returns the node of an axis that momentum of a form is taken at. */
 MPMI_INLINE int32_t base_of(int32_t width, int32_t form) {
   return form == MPMI_SCATTER_4_AFFINE ? 0 : MPMI_MIDDLE(width);
 }
@@ -153,8 +152,7 @@ MPMI_INLINE mpmi_giving given_by(int32_t dim, int32_t form, const mpmi_first_ord
   return in;
 }
 
-/* sum += what is given to node k of an axis by the weights of particle p; sum = that where it is the first.
- * */
+/* sum += what is given to node k of an axis by the weights of particle p; sum = that where it comes first. */
 MPMI_INLINE void add_given(int32_t dim, int32_t width, int32_t form, int32_t is_first, const mpmi_weights *W,
                            const double *inverse_spacing, int32_t axis, int32_t k, int64_t p,
                            const mpmi_giving *in, mpmi_giving *sum) {
@@ -417,7 +415,7 @@ MPMI_INLINE void give(int32_t dim, int32_t width, int32_t form, int32_t total, c
 }
 
 /* Returns the first node of the stencil of particle p. */
-MPMI_INLINE double *stencil_of(int32_t form, const mpmi_scatter *job, const mpmi_weights *W, int64_t p) {
+MPMI_INLINE double *first_node_of(int32_t form, const mpmi_scatter *job, const mpmi_weights *W, int64_t p) {
   double *stencil = job->tile + (form >= MPMI_SCATTER_8 && !is_flat(form) ? 8 : 4) * (int64_t)W->node[p];
   MPMI_SETTLE(stencil);
   return stencil;
@@ -445,7 +443,7 @@ MPMI_INLINE int64_t scatter_clusters(int32_t dim, int32_t width, int32_t form, c
   const int64_t ahead = mpmi_ahead(&job->streams, s);
   int64_t p = 0;
   while (p < MPMI_CHUNK && mpmi_is_cluster(dim, &job->points, W, s + p, p)) {
-    scatter_given(dim, width, form, 2, job, W, inverse_spacing, s, p, of, stencil_of(form, job, W, p));
+    scatter_given(dim, width, form, 2, job, W, inverse_spacing, s, p, of, first_node_of(form, job, W, p));
     for (const int64_t end = p + MPMI_CLUSTER(dim); p < end; ++p) mpmi_prefetch(&job->streams, ahead, p);
   }
   return p;
@@ -470,7 +468,7 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, scatter_clust
     const int64_t first = job->axis[0].still ? clusters(job, s, &W, inverse_spacing, &of) : 0;
     const int64_t ahead = mpmi_ahead(&job->streams, s);
     for (int64_t p = first; p < n; ++p) {
-      double *stencil = stencil_of(form, job, &W, p);
+      double *stencil = first_node_of(form, job, &W, p);
       mpmi_prefetch(&job->streams, ahead, p);
       scatter_given(dim, width, form, 1, job, &W, inverse_spacing, s, p, &of, stencil);
     }

@@ -10,7 +10,7 @@
 
 /* ---- kernels ------------------------------------------------------------------------------------------ */
 static const double spacing = 0.25;
-enum { N = 6 * MPMI_CHUNK, MOST = 16 * 16 * 16, ROWS = 3 + 3 + 2 + 6 + 9 + 3 };
+enum { N = 8 * MPMI_CHUNK, MOST = 16 * 16 * 16, ROWS = 3 + 3 + 2 + 6 + 9 + 3 };
 enum { WHOLE, MOVED, ELSEWHERE, OF_OTHER_SIZE, KINDS }; /* what has been done to a cluster */
 
 /* Clusters of particles of random stencils, some of which have one particle that does not fit. Sizes are all
@@ -26,7 +26,9 @@ static void throw_clusters(int32_t dim, int32_t width, dice *d, double (*row)[N]
       const double end[2] = {cell + throw_between(d, 0.05, 0.45), cell + throw_between(d, 0.55, 0.95)};
       for (int32_t i = 0; i < size; ++i) row[k][begin + i] = spacing * end[i >> (dim - 1 - k) & 1];
     }
-    switch (begin / size % KINDS) {
+    /* kernels take the clusters that a chunk begins with: each kind is the first of a chunk once, and the
+     * last chunks are full of them */
+    switch (begin < N - 2 * MPMI_CHUNK ? (begin / MPMI_CHUNK + begin / size) % KINDS : WHOLE) {
     case MOVED:
       row[axis][begin + odd] += 1e-3 * spacing;
       break;
@@ -98,7 +100,8 @@ START_TEST(clusters_give_what_their_particles_do) {
 }
 END_TEST
 
-/* What a cluster takes has the same sums in the same order. Some chunks have a hole. */
+/* What a cluster takes has the same sums in the same order; compilers may fuse other products of them. Some
+ * chunks have a hole. */
 START_TEST(clusters_take_what_their_particles_do) {
   static double row[ROWS][N], tile[8 * MOST], taken[2][24][N], volume[N];
   const int32_t isa = MPM_ISA_BASELINE + _i % ISAS, setting = _i / ISAS;
@@ -127,7 +130,8 @@ START_TEST(clusters_take_what_their_particles_do) {
       kernels->gather[dim][width][form](&job, 0, N);
     }
     ck_assert_double_gt(largest(24 * N, taken[0][0]), 0.1);
-    ck_assert(memcmp(taken[0], taken[1], sizeof taken[0]) == 0);
+    for (int32_t r = 0; r < 24; ++r)
+      for (int32_t p = 0; p < N; ++p) ck_within("taken", taken[1][r][p], taken[0][r][p], 2e-14);
   }
 }
 END_TEST
@@ -162,26 +166,28 @@ static void shuffle(int64_t n, int64_t *order, dice *d) {
   }
 }
 
-/* Adds a lattice of side^dim particles in random order, per_cell along an axis of a cell; the last one stands
- * twice. */
-static void add_lattice(world *w, mpm_particles *set, int64_t side, int32_t per_cell) {
+/* Adds a lattice of side^dim particles in random order, per_cell along an axis of a cell, and one that stands
+ * where the first one of the lattice does. Leaves one of them out, unless `but` is below 0. */
+static void add_lattice(world *w, mpm_particles *set, int64_t side, int32_t per_cell, int64_t but) {
   const int32_t dim = w->dim;
-  int64_t n = 1;
+  int64_t n = 1, count = 0;
   for (int32_t k = 0; k < dim; ++k) n *= side;
-  double *x = malloc((size_t)(dim * (n + 1)) * sizeof *x), *volume = malloc((size_t)(n + 1) * sizeof *volume);
-  int64_t *order = malloc((size_t)n * sizeof *order);
+  const int64_t all = n + (but < 0);
+  double *x = malloc((size_t)(dim * all) * sizeof *x), *volume = malloc((size_t)all * sizeof *volume);
+  int64_t *order = malloc((size_t)n * sizeof *order), *ids = malloc((size_t)all * sizeof *ids);
   dice d = {5 + (uint64_t)dim};
   shuffle(n, order, &d);
-  for (int64_t i = 0; i <= n; ++i) {
-    volume[i] = pow(1.0 / per_cell, dim);
-    for (int32_t k = 0; k < dim; ++k) {
-      int64_t at = i < n ? order[i] : n - 1;
-      for (int32_t a = 0; a < k; ++a) at /= side;
-      x[k * (n + 1) + i] = 4.5 + ((double)(at % side) + 0.5) / per_cell;
-    }
+  for (int64_t id = 0; id <= n; ++id) {
+    if (id == but) continue;
+    ids[count] = id;
+    volume[count] = pow(1.0 / per_cell, dim);
+    int64_t at = id < n ? order[id] : 0;
+    for (int32_t k = 0; k < dim; ++k, at /= side)
+      x[k * all + count] = 4.5 + ((double)(at % side) + 0.5) / per_cell;
+    ++count;
   }
-  ck_ok(w, mpm_particles_add(set, n + 1, x, NULL, volume, NULL, NULL, NULL));
-  free(x), free(volume), free(order);
+  ck_ok(w, mpm_particles_add(set, all, x, NULL, volume, NULL, ids, NULL));
+  free(x), free(volume), free(order), free(ids);
 }
 
 static mpm_particles *open_lattice(world *w, int32_t dim, int32_t lagrangian, int64_t side,
@@ -189,7 +195,7 @@ static mpm_particles *open_lattice(world *w, int32_t dim, int32_t lagrangian, in
   world_desc desc = world_default(dim, 24, 1.0);
   desc.grid.total_lagrangian = lagrangian;
   mpm_particles *set = world_open(w, &desc);
-  add_lattice(w, set, side, per_cell);
+  add_lattice(w, set, side, per_cell, -1);
   world_step(w, 1e-3);
   return set;
 }
@@ -204,12 +210,14 @@ START_TEST(sorts_put_clusters_in_front) {
   int64_t expected = 1;
   for (int32_t k = 0; k < dim; ++k) expected *= pairs;
   ck_assert_int_eq(clusters_of(set, dim), expected);
-  /* without one of its particles a cluster is none, and the others stay; so they do in another sort */
-  const int64_t id[] = {mpmi_i64(set, MPMI_ID, 0)[0]};
+  /* without one of its particles, which has no twin, a cluster is none, unless others of its cell take the
+   * place, which four in a row do; so it is in another sort */
+  const int64_t left = expected - (dim > 1 || per_cell == 2);
+  const int64_t id[] = {mpmi_i64(set, MPMI_ID, 0)[1]};
   ck_ok(&w, mpm_particles_remove(set, 1, id));
   for (int32_t i = 0; i < 2; ++i) {
     world_step(&w, 1e-3);
-    ck_assert_int_eq(clusters_of(set, dim), expected - 1);
+    ck_assert_int_eq(clusters_of(set, dim), left);
     const double far[3] = {15.3, 15.3, 15.3}, volume[] = {1e-3};
     ck_ok(&w, mpm_particles_add(set, 1, far, NULL, volume, NULL, NULL, NULL));
   }
@@ -217,34 +225,26 @@ START_TEST(sorts_put_clusters_in_front) {
 }
 END_TEST
 
-/* What has been taken out of a cluster leaves the others in the order that any sort gives them: a state that
- * is loaded goes on with the same bits. */
-START_TEST(broken_clusters_go_on) {
+/* Where a particle has been taken out of a cluster, the others have the order that they would have without
+ * it, so that bits do not depend on when the next sort comes. */
+START_TEST(broken_clusters_are_sorted) {
   const int32_t dim = 1 + _i;
   world w, other;
   world_desc desc = world_default(dim, 24, 1.0);
   desc.grid.total_lagrangian = 1;
-  mpm_particles *set = open_lattice(&w, dim, 1, 18, 2);
-  const int64_t id[] = {3, 8, 15};
-  for (int32_t k = 0; k < 3; ++k) {
-    const double pull[3] = {0.02 * (k + 1), -0.01, 0.03};
-    double *v = fetch(&w, set, "velocity", dim), *x = fetch(&w, set, "position", dim);
-    const int64_t n = mpm_particles_count(set);
-    for (int64_t i = 0; i < dim * n; ++i) v[i] += pull[i / n] * sin(0.7 * x[i]);
-    put(&w, set, "velocity", dim, v);
-    free(v), free(x);
-    ck_ok(&w, mpm_particles_remove(set, 1, &id[k]));
-    world_open(&other, &desc);
-    world_copy(&w, &other);
-    for (int32_t i = 0; i < 3; ++i) {
-      world_step(&w, 0.1);
-      world_step(&other, 0.1);
-      ck_assert_uint_eq(world_hash(&w), world_hash(&other));
-    }
-    ck_assert_int_eq(clusters_of(set, dim), clusters_of(other.set[0], dim));
+  for (int64_t but = 0; but < 18; but += 3) {
+    mpm_particles *set = open_lattice(&w, dim, 1, 18, 2);
+    ck_ok(&w, mpm_particles_remove(set, 1, &but));
+    world_step(&w, 1e-3);
+    mpm_particles *without = world_open(&other, &desc);
+    add_lattice(&other, without, 18, 2, but);
+    world_step(&other, 1e-3);
+    ck_assert_int_eq(set->slots, without->slots);
+    const int64_t *id = mpmi_i64(set, MPMI_ID, 0), *wanted = mpmi_i64(without, MPMI_ID, 0);
+    for (int64_t s = 0; s < set->slots; ++s) ck_holds(id[s] == wanted[s] || (id[s] < 0 && wanted[s] < 0));
     world_close(&other);
+    world_close(&w);
   }
-  world_close(&w);
 }
 END_TEST
 
@@ -278,7 +278,7 @@ TCase *clusters_case(void) {
   tcase_add_loop_test(tc, clusters_give_what_their_particles_do, 0, ISAS * SETTINGS);
   tcase_add_loop_test(tc, clusters_take_what_their_particles_do, 0, ISAS * SETTINGS);
   tcase_add_loop_test(tc, sorts_put_clusters_in_front, 0, 6);
-  tcase_add_loop_test(tc, broken_clusters_go_on, 0, 3);
+  tcase_add_loop_test(tc, broken_clusters_are_sorted, 0, 3);
   tcase_add_loop_test(tc, sorts_leave_others_in_order, 0, 3);
   return tc;
 }
