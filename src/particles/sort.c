@@ -116,7 +116,7 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_so
   }
   for (int64_t b = blocks->count; b > 0; --b) to->start[b] = padded(to->start[b - 1]);
   to->start[0] = 0;
-  if (stay) order_clusters(set, blocks->count, sorting, to);
+  if (stay && slots) order_clusters(set, blocks->count, sorting, to);
   return mpmi_particles_reserve(set,
                                 slots); /* last, because the second copies may move, and with them of_slot */
 }
