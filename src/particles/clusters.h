@@ -1,7 +1,7 @@
 /* The order of particles that stay where they were put, those of total Lagrangian grids. A cluster is made of
  * 2, 4 or 8 particles, two along each axis, that have the same stencil and share their coordinates, and so
- * their weights, with each other: sums over its particles and nodes are formed axis by axis
- * (transfer/cluster.h), which look again whether they are one. Fills make such particles. */
+ * their weights, with each other: kernels form sums over its particles and nodes axis by axis, and look at
+ * stencils and coordinates again before that (transfer/cluster.h). Fills make such particles. */
 #ifndef MPMI_CLUSTERS_H
 #define MPMI_CLUSTERS_H
 
