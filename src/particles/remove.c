@@ -39,8 +39,8 @@ mpm_status mpm_particles_remove(mpm_particles *particles, int64_t n, const int64
   }
   particles->count -= n;
   particles->dirty |= MPMI_DIRTY_SUMS;
-  /* what is left of a cluster goes behind the others in the next sort: that one comes now, so that results do
-   * not depend on when others have reason to sort */
+  /* what is left of a cluster goes behind the others in the next sort, which must come before the next step:
+   * results are not to depend on when something else gives reason to sort */
   if (mpmi_is_total_lagrangian(particles->grid)) particles->dirty |= MPMI_DIRTY_PLACE;
   mpmi_index_drop(particles);
   return MPM_OK;

@@ -210,8 +210,8 @@ MPMI_INLINE void scatter_planes(int32_t dim, int32_t width, int32_t form, int32_
   }
 }
 
-/* Scatters to the whole stencil. Clusters of 3-D go plane by plane, which makes their code smaller by half
- * and costs no time. */
+/* Scatters to the whole stencil. Clusters of 3-D go plane by plane in a loop, which costs no time and makes
+ * their code two fifths smaller. */
 MPMI_INLINE void scatter_stencil(int32_t dim, int32_t width, int32_t form, int32_t ends,
                                  const mpmi_weights *W, const double *inverse_spacing, int64_t p,
                                  const mpmi_first_order *of, double *stencil) {

@@ -44,50 +44,55 @@ static void throw_clusters(int32_t dim, int32_t width, dice *d, double (*row)[N]
   }
 }
 
+/* What a test goes through: instruction sets, dimensions, and stencils of width 2 to 4 and of GIMP. */
+enum { ISAS = 4, SETTINGS = ISAS * 3 * 4 };
+typedef struct setting {
+  const mpmi_kernels *kernels; /* NULL: the processor lacks them */
+  int32_t dim, width, gimp;
+} setting;
+
+static setting setting_of(int32_t i) {
+  const int32_t isa = MPM_ISA_BASELINE + i % ISAS, stencil = i / ISAS / 3;
+  return (setting){has_isa(isa) ? mpmi_kernels_of(isa) : NULL, 1 + i / ISAS % 3,
+                   stencil < 3 ? 2 + stencil : 3, stencil == 3};
+}
+
 /* The particles of throw_clusters() on a grid where they stay, or where they could move. */
-static mpmi_scatter scatter_of(const mpmi_kernels *kernels, int32_t dim, int32_t width, int32_t gimp,
-                               int32_t still, const double (*row)[N]) {
-  mpmi_scatter job = {.weights = kernels->weights[gimp ? MPMI_FAMILY_GIMP : width - 2][dim],
+static mpmi_scatter scatter_of(const setting *is, int32_t still, const double (*row)[N]) {
+  mpmi_scatter job = {.weights = is->kernels->weights[is->gimp ? MPMI_FAMILY_GIMP : is->width - 2][is->dim],
                       .need = MPMI_NEED_GRADIENT | MPMI_NEED_MOMENT,
                       .mass = row[6],
                       .volume = row[7],
                       .fused_dt = 0.01,
                       .streams = {.end = N}};
-  for (int32_t k = 0; k < dim; ++k) {
+  for (int32_t k = 0; k < is->dim; ++k) {
     job.axis[k] = (mpmi_axis){.spacing = spacing,
                               .inverse_spacing = 1.0 / spacing,
                               .last_cell = 9.0,
                               .middle = 8.5,
                               .still = still};
     job.points.x[k] = row[k], job.v[k] = row[3 + k], job.gravity[k] = -9.81;
-    if (gimp) job.points.size[k] = row[23 + k];
+    if (is->gimp) job.points.size[k] = row[23 + k];
   }
   for (int32_t c = 0; c < 6; ++c) job.stress[c] = row[8 + c];
   for (int32_t c = 0; c < 9; ++c) job.affine[c] = row[14 + c];
   return job;
 }
 
-enum { ISAS = 4, SETTINGS = 3 * 4 }; /* settings: by dim; widths 2 to 4, and GIMP */
-
-static int32_t width_of(int32_t setting) {
-  return setting / 3 < 3 ? 2 + setting / 3 : 3;
-}
-
 START_TEST(clusters_give_what_their_particles_do) {
   static double row[ROWS][N], tile[2][8 * MOST];
-  const int32_t isa = MPM_ISA_BASELINE + _i % ISAS, setting = _i / ISAS;
-  const int32_t dim = 1 + setting % 3, width = width_of(setting), gimp = setting / 3 == 3;
-  if (!has_isa(isa)) return;
-  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  const setting is = setting_of(_i);
+  const int32_t dim = is.dim, width = is.width;
+  if (!is.kernels) return;
   dice d = {31 + (uint64_t)_i};
   throw_clusters(dim, width, &d, row);
   for (int32_t form = 0; form < MPMI_SCATTER_FORMS; ++form) {
-    if (!kernels->scatter[dim][width][form]) continue;
+    if (!is.kernels->scatter[dim][width][form]) continue;
     memset(tile, 0, sizeof tile);
     for (int32_t still = 0; still < 2; ++still) {
-      mpmi_scatter job = scatter_of(kernels, dim, width, gimp, still, (const double(*)[N])row);
+      mpmi_scatter job = scatter_of(&is, still, (const double(*)[N])row);
       job.tile = tile[still];
-      kernels->scatter[dim][width][form](&job, 0, N);
+      is.kernels->scatter[dim][width][form](&job, 0, N);
     }
     char name[60];
     snprintf(name, sizeof name, "%d-D, width %d, form %d", (int)dim, (int)width, (int)form);
@@ -104,10 +109,9 @@ END_TEST
  * chunks have a hole. */
 START_TEST(clusters_take_what_their_particles_do) {
   static double row[ROWS][N], tile[8 * MOST], taken[2][24][N], volume[N];
-  const int32_t isa = MPM_ISA_BASELINE + _i % ISAS, setting = _i / ISAS;
-  const int32_t dim = 1 + setting % 3, width = width_of(setting), gimp = setting / 3 == 3;
-  if (!has_isa(isa)) return;
-  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  const setting is = setting_of(_i);
+  const int32_t dim = is.dim, width = is.width;
+  if (!is.kernels) return;
   dice d = {67 + (uint64_t)_i};
   throw_clusters(dim, width, &d, row);
   for (int32_t i = 0; i < 8 * MOST; ++i) tile[i] = throw_between(&d, -1.0, 1.0);
@@ -115,7 +119,7 @@ START_TEST(clusters_take_what_their_particles_do) {
   for (int32_t form = 0; form < MPMI_GATHER_FORMS; ++form) {
     memset(taken, 0, sizeof taken);
     for (int32_t still = 0; still < 2; ++still) {
-      const mpmi_scatter of = scatter_of(kernels, dim, width, gimp, still, (const double(*)[N])row);
+      const mpmi_scatter of = scatter_of(&is, still, (const double(*)[N])row);
       mpmi_gather job = {.weights = of.weights,
                          .need = of.need,
                          .points = of.points,
@@ -127,7 +131,7 @@ START_TEST(clusters_take_what_their_particles_do) {
                          .streams = {.end = N}};
       for (int32_t k = 0; k < dim; ++k) job.axis[k] = of.axis[k];
       for (int32_t e = 0; e < 9; ++e) job.L[e] = taken[still][6 + e], job.C[e] = taken[still][15 + e];
-      kernels->gather[dim][width][form](&job, 0, N);
+      is.kernels->gather[dim][width][form](&job, 0, N);
     }
     ck_assert_double_gt(largest(24 * N, taken[0][0]), 0.1);
     for (int32_t r = 0; r < 24; ++r)
@@ -275,8 +279,8 @@ END_TEST
 
 TCase *clusters_case(void) {
   TCase *tc = tcase_create("clusters");
-  tcase_add_loop_test(tc, clusters_give_what_their_particles_do, 0, ISAS * SETTINGS);
-  tcase_add_loop_test(tc, clusters_take_what_their_particles_do, 0, ISAS * SETTINGS);
+  tcase_add_loop_test(tc, clusters_give_what_their_particles_do, 0, SETTINGS);
+  tcase_add_loop_test(tc, clusters_take_what_their_particles_do, 0, SETTINGS);
   tcase_add_loop_test(tc, sorts_put_clusters_in_front, 0, 6);
   tcase_add_loop_test(tc, broken_clusters_are_sorted, 0, 3);
   tcase_add_loop_test(tc, sorts_leave_others_in_order, 0, 3);
