@@ -106,6 +106,12 @@ void mpmi_gradient_keep(mpmi_batch *b);
 int32_t mpmi_strain_deform(mpmi_batch *b);
 /* Runs the law there; b->law_ran tells whether it has answered. */
 void mpmi_strain_law(mpmi_batch *b);
+/* Returns 1 where the squares of wave speeds will do, which a law of the library finds before its roots. */
+int32_t mpmi_takes_squares(const mpmi_settings *settings, const mpm_material *material);
+/* Makes wave speeds and viscosities of a batch of a total Lagrangian grid, which the law gave for slots of a
+ * set from `begin` on, those over reference positions; copy: of F. */
+void mpmi_take_reference_speeds(const mpmi_settings *settings, const mpm_particles *set, int32_t copy,
+                                int64_t begin, int64_t n, mpmi_law_batch *law);
 
 /* Makes volumes, which have one copy, from a copy of F: after a step that failed, and where the host looks on
  * in between. */

@@ -12,7 +12,7 @@ void mpmi_sums_bind(mpmi_batch *b) {
       (mpmi_sums_job){.ld = b->law.batch.ld,
                       .wave_speed = b->law.wave_speed,
                       .kinematic_viscosity = mpmi_may_be_viscous(b->set->material) ? b->law.viscosity : NULL,
-                      .squared = b->law.squares && b->set->material->law,
+                      .squared = b->law.squares,
                       .energy = b->law.energy,
                       .viscous_factor = 2.0 * grid->dim / (grid->h_min * grid->h_min),
                       .carried = mpmi_is_total_lagrangian(grid) ? 0.0 : 1.0,

@@ -29,11 +29,9 @@ static int32_t works_in_place(const mpmi_settings *settings, const mpm_particles
          !mpmi_is_plane_stress(set->grid) && !settings->desc.locking_remedy && !mpmi_is_implicit(settings);
 }
 
-/* Sums need the roots of few wave speeds. Reference speeds, sheets and stiffness of springs need those of
- * all. */
-static int32_t takes_squares(const mpmi_settings *settings) {
-  return !mpmi_is_implicit(settings) && !mpmi_is_total_lagrangian(settings->grid) &&
-         !mpmi_is_plane_stress(settings->grid);
+/* Sums need the roots of few wave speeds; sheets and stiffness of springs need those of all. */
+int32_t mpmi_takes_squares(const mpmi_settings *settings, const mpm_material *material) {
+  return material->law && !mpmi_is_implicit(settings) && !mpmi_is_plane_stress(settings->grid);
 }
 
 /* A total Lagrangian grid makes the gradient over reference positions that over the present ones once it is
@@ -75,7 +73,7 @@ void mpmi_strain_bind(mpmi_batch *b) {
   const mpm_grid *grid = settings->grid;
   b->law.stored = works_in_place(settings, b->set, b->m);
   if (b->law.stored) b->law.batch.ld = b->set->ld;
-  b->law.squares = takes_squares(settings);
+  b->law.squares = mpmi_takes_squares(settings, b->set->material);
   b->deform =
       (mpmi_deform){.dt = b->step->dt,
                     .total = mpmi_is_total_lagrangian(grid) && deforms_at_once(b),
@@ -161,11 +159,12 @@ static void take_thickness(mpmi_batch *b) {
   b->flags |= make_volumes(b);
 }
 
-/* Waves are as fast over reference positions as F_new has it. */
-static void take_reference_speeds(mpmi_batch *b) {
+void mpmi_take_reference_speeds(const mpmi_settings *settings, const mpm_particles *set, int32_t copy,
+                                int64_t begin, int64_t n, mpmi_law_batch *law) {
   const double *F[9] = {NULL};
-  mpmi_point_at(b->set, MPMI_F, 1, b->begin, F);
-  b->step->settings->pull_back->speeds[b->set->grid->dim](F, b->law.wave_speed, b->law.viscosity, b->n);
+  mpmi_point_at(set, MPMI_F, copy, begin, F);
+  settings->pull_back->speeds[set->grid->dim](F, law->squares, law->wave_speed,
+                                              mpmi_may_be_viscous(set->material) ? law->viscosity : NULL, n);
 }
 
 void mpmi_strain_law(mpmi_batch *b) {
@@ -191,7 +190,8 @@ void mpmi_strain_law(mpmi_batch *b) {
   }
   if (mpmi_dissipates(step->settings, b->m)) mpmi_dissipation_find(b);
   if (mpmi_is_plane_stress(b->set->grid)) take_thickness(b);
-  if (mpmi_is_total_lagrangian(b->set->grid)) take_reference_speeds(b);
+  if (mpmi_is_total_lagrangian(b->set->grid))
+    mpmi_take_reference_speeds(step->settings, b->set, 1, b->begin, b->n, &b->law);
   if (!b->law.stored) mpmi_law_batch_store(&b->law, b->set, 1, b->begin, b->n);
   b->law_ran = 1;
 }

@@ -29,6 +29,7 @@ static void bind_particles(const mpm_stepper *s, const mpm_particles *set, const
                          .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin,
                          .wave_speed = b->wave_speed,
                          .kinematic_viscosity = b->viscosity,
+                         .squared = b->squares,
                          .energy = b->energy,
                          .viscous_factor = 2.0 * grid->dim / (grid->h_min * grid->h_min),
                          .carried = mpmi_is_total_lagrangian(grid) ? 0.0 : 1.0};
@@ -69,7 +70,8 @@ static mpm_status not_finite(mpm_stepper *s, int32_t m, const mpmi_law_batch *b,
     *failure = mpmi_particle_failure(MPM_NONFINITE, m, b->batch.id[p], "the wave speed is not finite");
   return mpmi_fail(s->context, MPM_NONFINITE,
                    "the material gives wave speed %g and kinematic viscosity %g at particle %lld of set %d",
-                   b->wave_speed[p], b->viscosity[p], (long long)b->batch.id[p], (int)m);
+                   b->squares ? sqrt(b->wave_speed[p]) : b->wave_speed[p], b->viscosity[p],
+                   (long long)b->batch.id[p], (int)m);
 }
 
 /* What a set comes to, with the memory that takes. */
@@ -133,11 +135,7 @@ static mpm_status sum_slots(summing *of, int64_t begin, int64_t end, int32_t sin
     mpmi_law_batch_load_F(b, set, begin, n);
     const mpm_status answer = mpmi_law_batch_run_in(b, set);
     if (answer) return refused(s, m, answer, &b->fault, failure);
-    if (mpmi_is_total_lagrangian(set->grid)) {
-      const double *F[9] = {NULL};
-      mpmi_point_at(set, MPMI_F, 0, begin, F);
-      s->settings.pull_back->speeds[s->grid->dim](F, b->wave_speed, b->viscosity, n);
-    }
+    if (mpmi_is_total_lagrangian(set->grid)) mpmi_take_reference_speeds(&s->settings, set, 0, begin, n, b);
     mpmi_sums_job job;
     bind_particles(s, set, b, begin, n, of->moments, &job);
     if (singly ? sum_singly(of, &job, n) : s->settings.kernels->sums[s->grid->dim](&job, n, &here))
@@ -159,6 +157,7 @@ static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_whole_sum *sums, mpmi_
   if (!memory) return MPM_E_NOMEM;
   summing of = {.s = s, .m = m, .moments = (double *)(void *)(memory + batch), .sum = sums, .rates = rates};
   mpmi_law_batch_bind(&of.law, material, memory);
+  of.law.squares = mpmi_takes_squares(&s->settings, material);
   mpm_status status = MPM_OK;
   const int64_t *start = member->now.start;
   const int64_t blocks = start ? s->layout.blocks.count : 0;

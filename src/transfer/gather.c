@@ -96,95 +96,97 @@ MPMI_INLINE void keep_partial(int32_t dim, mpmi_taking t, const mpmi_partial *of
   if (t.moment) store_columns(dim, t.part, of->M, p, out->M);
 }
 
-/* Gathers from a plane of nodes, or in 2-D or 1-D from all of them, what is common to the particles that
- * differ along the first axis alone; for `ends` see gather_stencil(). */
-MPMI_INLINE void gather_plane(int32_t dim, int32_t width, mpmi_taking t, int32_t ends, const mpmi_weights *W,
+/* Gathers from a layer of nodes, which have one place along the first axis: what is common to the particles
+ * that differ along that axis alone. `ends` is their number along each of the
+ * others. */
+MPMI_INLINE void gather_layer(int32_t dim, int32_t width, mpmi_taking t, int32_t ends, const mpmi_weights *W,
                               const double *inverse_spacing, int64_t p, const double *corner,
-                              mpmi_partial *plane) {
-  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, mid = dim >= 2 ? dim - 2 : 0;
+                              mpmi_partial *layer) {
+  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
+  if (dim == 1) layer->v = mpmi_node_load(t.all, corner);
   MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
-    if (dim < 2 && j > 0) break;
+    if (dim == 1 || (dim == 2 && j > 0)) break;
     const double *node = corner + (int64_t)t.values * j * edge;
-    mpmi_partial row[2];
+    mpmi_partial row[2], *const sum = dim == 2 ? layer : row;
     MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
       const mpmi_partial at = {.v = mpmi_node_load(t.all, node + k * t.values)};
       for (int32_t z = 0; z < ends; ++z)
         add_partial(dim, width, t, W, inverse_spacing, last, k, p + MPMI_CLUSTER_END(dim, last, z), &at,
-                    &row[z]);
+                    &sum[z]);
     }
-    for (int32_t y = 0; y < (dim == 1 ? 1 : ends); ++y)
+    for (int32_t y = 0; dim == 3 && y < ends; ++y)
       for (int32_t z = 0; z < ends; ++z)
-        if (dim == 1)
-          plane[z] = row[z];
-        else
-          add_partial(dim, width, t, W, inverse_spacing, mid, j, p + MPMI_CLUSTER_END(dim, mid, y), &row[z],
-                      &plane[2 * y + z]);
+        add_partial(dim, width, t, W, inverse_spacing, 1, j, p + MPMI_CLUSTER_END(dim, 1, y), &row[z],
+                    &layer[2 * y + z]);
   }
 }
 
-/* Gathers for particle p, or below three axes for the cluster that begins with it: `ends` is the number of
- * particles along an axis. */
-MPMI_INLINE void gather_stencil(int32_t dim, int32_t width, int32_t form, int32_t ends, const mpmi_weights *W,
+/* Returns the distance between layers of a tile, in doubles. */
+MPMI_INLINE int64_t layer_stride(int32_t dim, int32_t width, mpmi_taking t) {
+  const int64_t edge = MPMI_TILE_EDGE(dim, width);
+  return t.values * (dim == 3 ? edge * edge : dim == 2 ? edge : 1);
+}
+
+/* Gathers for particle p. */
+MPMI_INLINE void gather_stencil(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W,
                                 const double *inverse_spacing, int64_t p, const double *tile,
                                 mpmi_gathered *out) {
   const mpmi_taking t = taking_of(dim, form);
-  const int64_t stride = (int64_t)t.values * MPMI_TILE_EDGE(dim, width) * MPMI_TILE_EDGE(dim, width);
   const double *stencil = tile + (int64_t)t.values * W->node[p];
   MPMI_SETTLE(stencil);
-  mpmi_partial whole[4], plane[4];
+  mpmi_partial whole, layer;
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
-    if (dim < 3 && i > 0) break;
-    gather_plane(dim, width, t, ends, W, inverse_spacing, p, stencil + i * stride, dim < 3 ? whole : plane);
-    if (dim == 3) add_partial(dim, width, t, W, inverse_spacing, 0, i, p, plane, whole);
+    gather_layer(dim, width, t, 1, W, inverse_spacing, p, stencil + i * layer_stride(dim, width, t), &layer);
+    add_partial(dim, width, t, W, inverse_spacing, 0, i, p, &layer, &whole);
   }
-  for (int32_t y = 0; y < (dim == 2 ? ends : 1); ++y)
-    for (int32_t z = 0; z < ends; ++z) keep_partial(dim, t, &whole[2 * y + z], p + 2 * y + z, out);
+  keep_partial(dim, t, &whole, p, out);
 }
 
-/* A plane that waits for the others: parts of it in memory. */
-typedef struct mpmi_kept_plane {
+/* A layer that waits for the others: parts of it in memory. */
+typedef struct mpmi_kept_layer {
   _Alignas(64) double v[4][8], L[2][4][8], M[2][4][8];
-} mpmi_kept_plane;
+} mpmi_kept_layer;
 
-MPMI_INLINE void keep_plane(mpmi_taking t, const mpmi_partial *plane, mpmi_kept_plane *to) {
-  for (int32_t yz = 0; yz < 4; ++yz) {
-    mpmi_node_store(t.all, to->v[yz], plane[yz].v);
-    for (int32_t a = 0; a < 2 && t.slopes; ++a) mpmi_node_store(t.part, to->L[a][yz], plane[yz].L[a + 1]);
-    for (int32_t a = 0; a < 2 && t.moment; ++a) mpmi_node_store(t.part, to->M[a][yz], plane[yz].M[a + 1]);
+MPMI_INLINE void keep_layer(int32_t dim, mpmi_taking t, const mpmi_partial *layer, mpmi_kept_layer *to) {
+  for (int32_t yz = 0; yz < MPMI_CLUSTER(dim) / 2; ++yz) {
+    mpmi_node_store(t.all, to->v[yz], layer[yz].v);
+    for (int32_t a = 0; a < dim - 1 && t.slopes; ++a)
+      mpmi_node_store(t.part, to->L[a][yz], layer[yz].L[a + 1]);
+    for (int32_t a = 0; a < dim - 1 && t.moment; ++a)
+      mpmi_node_store(t.part, to->M[a][yz], layer[yz].M[a + 1]);
   }
 }
-MPMI_INLINE mpmi_partial kept_plane(mpmi_taking t, const mpmi_kept_plane *of, int32_t yz) {
+MPMI_INLINE mpmi_partial kept_layer(int32_t dim, mpmi_taking t, const mpmi_kept_layer *of, int32_t yz) {
   mpmi_partial in = {.v = mpmi_node_load(t.all, of->v[yz])};
-  for (int32_t a = 0; a < 2; ++a) {
+  for (int32_t a = 0; a < dim - 1; ++a) {
     if (t.slopes) in.L[a + 1] = mpmi_node_load(t.part, of->L[a][yz]);
     if (t.moment) in.M[a + 1] = mpmi_node_load(t.part, of->M[a][yz]);
   }
   return in;
 }
 
-/* Gathers for the cluster of 3-D that begins with particle p: its planes one after the other, because there
- * are too few registers for eight sums of all. */
-MPMI_INLINE void gather_cluster(int32_t width, int32_t form, const mpmi_weights *W,
+/* Gathers for the cluster that begins with particle p, two along each axis: its layers one after the other,
+ * because there are too few registers for the sums of all of its particles. */
+MPMI_INLINE void gather_cluster(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W,
                                 const double *inverse_spacing, int64_t p, const double *tile,
                                 mpmi_gathered *out) {
-  const mpmi_taking t = taking_of(3, form);
-  const int64_t stride = (int64_t)t.values * MPMI_TILE_EDGE(3, width) * MPMI_TILE_EDGE(3, width);
+  const mpmi_taking t = taking_of(dim, form);
   const double *stencil = tile + (int64_t)t.values * W->node[p];
-  mpmi_kept_plane kept[MPMI_MAX_WIDTH];
+  mpmi_kept_layer kept[MPMI_MAX_WIDTH];
   for (int32_t i = 0; i < width; ++i) {
-    mpmi_partial plane[4];
-    gather_plane(3, width, t, 2, W, inverse_spacing, p, stencil + i * stride, plane);
-    keep_plane(t, plane, &kept[i]);
+    mpmi_partial layer[4];
+    gather_layer(dim, width, t, 2, W, inverse_spacing, p, stencil + i * layer_stride(dim, width, t), layer);
+    keep_layer(dim, t, layer, &kept[i]);
   }
-  for (int32_t yz = 0; yz < 4; ++yz)
+  for (int32_t yz = 0; yz < MPMI_CLUSTER(dim) / 2; ++yz)
     for (int32_t x = 0; x < 2; ++x) {
-      const int64_t first = p + MPMI_CLUSTER_END(3, 0, x);
+      const int64_t first = p + MPMI_CLUSTER_END(dim, 0, x);
       mpmi_partial whole;
       MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
-        const mpmi_partial plane = kept_plane(t, &kept[i], yz);
-        add_partial(3, width, t, W, inverse_spacing, 0, i, first, &plane, &whole);
+        const mpmi_partial layer = kept_layer(dim, t, &kept[i], yz);
+        add_partial(dim, width, t, W, inverse_spacing, 0, i, first, &layer, &whole);
       }
-      keep_partial(3, t, &whole, first + yz, out);
+      keep_partial(dim, t, &whole, first + yz, out);
     }
 }
 
@@ -274,10 +276,7 @@ MPMI_INLINE int64_t gather_clusters(int32_t dim, int32_t width, int32_t form, co
   const int64_t ahead = mpmi_ahead(&job->streams, s);
   int64_t p = 0;
   while (p < MPMI_CHUNK && mpmi_is_cluster(dim, &job->points, W, s + p, p)) {
-    if (dim == 3)
-      gather_cluster(width, form, W, inverse_spacing, p, job->tile, out);
-    else
-      gather_stencil(dim, width, form, 2, W, inverse_spacing, p, job->tile, out);
+    gather_cluster(dim, width, form, W, inverse_spacing, p, job->tile, out);
     for (const int64_t end = p + MPMI_CLUSTER(dim); p < end; ++p) mpmi_prefetch(&job->streams, ahead, p);
   }
   return p;
@@ -302,7 +301,7 @@ MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, gather_c
     const int64_t ahead = mpmi_ahead(&job->streams, begin + s);
     for (int64_t p = first; p < n; ++p) {
       mpmi_prefetch(&job->streams, ahead, p);
-      gather_stencil(dim, width, form, 1, &W, inverse_spacing, p, job->tile, &out);
+      gather_stencil(dim, width, form, &W, inverse_spacing, p, job->tile, &out);
     }
     for (int64_t q = 0; q < mpmi_whole_chunks(n); q += MPMI_LANES)
       hand_on(dim, width, form, job, q, s + q, &W, &out, &made);

@@ -318,21 +318,19 @@ MPMI_INLINE void give_hoop_force(int32_t total, const mpmi_scatter *job, int64_t
   to->force[0] -= mpmi_lanes_select(radius > 0.0, force, zero);
 }
 
-/* Computes -V sigma, or -V sigma F^-T. */
+/* Computes -V sigma, or -V sigma F^-T = -V / J sigma (J F^-1)^T. */
 MPMI_INLINE void give_stress(int32_t dim, int32_t total, const mpmi_scatter *job,
                              const mpmi_stress_rows *stress, int64_t s, mpmi_given *to) {
-  const mpmi_lanes volume = mpmi_lanes_load(job->volume + s);
+  mpmi_lanes scale = -mpmi_lanes_load(job->volume + s), adjugate[3][3], force[3];
+  if (total) scale = scale / mpmi_adjugate_load(dim, job->F, s, adjugate);
   for (int32_t k = 0; k < dim; ++k)
     for (int32_t r = k; r < dim; ++r)
-      to->stress[k][r] = to->stress[r][k] = -volume * mpmi_lanes_load(stress->at[k][r] + s);
-  if (!total) return;
-  mpmi_lanes inverse[3][3], force[3];
-  mpmi_inverse_load(dim, job->F, s, inverse);
-  for (int32_t r = 0; r < dim; ++r) {
+      to->stress[k][r] = to->stress[r][k] = scale * mpmi_lanes_load(stress->at[k][r] + s);
+  for (int32_t r = 0; total && r < dim; ++r) {
     for (int32_t j = 0; j < dim; ++j) force[j] = to->stress[j][r];
     for (int32_t k = 0; k < dim; ++k) {
       mpmi_lanes sum = {0.0};
-      for (int32_t j = 0; j < dim; ++j) sum += force[j] * inverse[k][j];
+      for (int32_t j = 0; j < dim; ++j) sum += force[j] * adjugate[k][j];
       to->stress[k][r] = sum;
     }
   }

@@ -20,16 +20,6 @@ MPMI_INLINE mpmi_lanes second_moment(const mpmi_sums_job *job, int32_t axis, int
   return zero + job->constant_moment[axis];
 }
 
-/* Returns component a, b of C D F^T. */
-MPMI_INLINE mpmi_lanes present_moment(int32_t dim, const mpmi_sums_job *job, int64_t s, int32_t a,
-                                      int32_t b) {
-  mpmi_lanes sum = {0.0};
-  for (int32_t k = 0; k < dim; ++k)
-    sum += mpmi_lanes_load(job->affine[3 * a + k] + s) * second_moment(job, k, s) *
-           mpmi_lanes_load(job->F[mpmi_stored_entry(dim, b, k)] + s);
-  return sum;
-}
-
 /* Adds component r of the angular momentum, m (x x v + sum_k D_k e_k x C e_k), with a, b the two other
  * axes. */
 MPMI_INLINE void add_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, int32_t r, mpmi_lanes m,
@@ -43,11 +33,21 @@ MPMI_INLINE void add_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, i
 }
 
 /* Adds what the matrices have of it where they are over reference positions, m sum_k D_k F e_k x C e_k. */
-MPMI_INLINE void add_reference_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, int32_t r,
-                                       mpmi_lanes m, mpmi_tally *t) {
-  const int32_t a = (r + 1) % 3, b = (r + 2) % 3;
-  if (a >= dim || b >= dim || !job->affine[0]) return;
-  t->angular[r] += m * (present_moment(dim, job, s, b, a) - present_moment(dim, job, s, a, b));
+MPMI_INLINE void add_reference_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, mpmi_tally *t) {
+  const mpmi_lanes m = mpmi_lanes_load(job->mass + s);
+  mpmi_lanes moment[3][3], F[3][3];
+  for (int32_t k = 0; k < dim; ++k) {
+    const mpmi_lanes of_axis = m * second_moment(job, k, s);
+    for (int32_t r = 0; r < dim; ++r) {
+      moment[r][k] = of_axis * mpmi_lanes_load(job->affine[3 * r + k] + s);
+      F[r][k] = mpmi_lanes_load(job->F[mpmi_stored_entry(dim, r, k)] + s);
+    }
+  }
+  for (int32_t r = 0; r < 3; ++r) {
+    const int32_t a = (r + 1) % 3, b = (r + 2) % 3;
+    for (int32_t k = 0; k < dim && a < dim && b < dim; ++k)
+      t->angular[r] += F[a][k] * moment[b][k] - F[b][k] * moment[a][k];
+  }
 }
 
 /* Adds twice the energy of the affine part, m sum_k D_k |C e_k|^2. */
@@ -133,7 +133,6 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpm
   }
   add_rate(dim, job, c_or_square, v, t);
   for (int32_t r = 0; r < 3; ++r) add_angular(dim, job, s, r, m, x, v, t);
-  for (int32_t r = 0; r < 3 && job->F[0]; ++r) add_reference_angular(dim, job, s, r, m, t);
   add_affine(dim, job, s, m, t);
 }
 
@@ -171,6 +170,8 @@ MPMI_INLINE uint32_t sum_batch(int32_t dim, const mpmi_sums_job *job, int64_t n,
   for (int32_t k = 0; k < 3; ++k) t.momentum[k] = t.angular[k] = zero;
   set_rate(dim, job, sums->rate, &t);
   for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) add_group(dim, job, s, &t);
+  if (job->what & MPMI_SUMS_MOTION && job->F[0] && job->affine[0])
+    for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) add_reference_angular(dim, job, s, &t);
   double sum[SUMMED] = {0.0};
   const mpmi_lanes of[SUMMED] = {[SUM_KINETIC] = t.kinetic,
                                  [SUM_AFFINE] = t.affine,

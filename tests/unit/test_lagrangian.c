@@ -545,6 +545,38 @@ START_TEST(stable_step) {
 }
 END_TEST
 
+/* Waves and viscosity of a law of the host. */
+static double host_speed, host_viscosity;
+static mpm_status loose_law(void *user, const mpm_material_batch *b) {
+  (void)user;
+  for (int64_t p = 0; p < b->n; ++p) {
+    for (int32_t c = 0; c < 6; ++c) b->stress_new[c * b->ld + p] = 0.0;
+    b->wave_speed[p] = host_speed;
+    b->kinematic_viscosity[p] = host_viscosity;
+    b->energy[p] = 0.0;
+  }
+  return 0;
+}
+
+START_TEST(stable_step_of_host_laws) {
+  for (int32_t dim = 1; dim <= 3; ++dim) {
+    world w;
+    world_desc desc = total_with(broad_methods[0], dim);
+    desc.law = (world_law){.density = 1e3, .stress = loose_law};
+    host_speed = 900.0, host_viscosity = 0.0;
+    mpm_particles *set = open_block_with(&w, &desc);
+    const double F[9] = {0.25, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}, h = w.desc.grid.spacing[0];
+    ck_ok(&w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, F));
+    ck_within("waves", world_stable_dt(&w), h / 3600.0, 1e-14 * h / 3600.0);
+    host_viscosity = 7e3;
+    ck_ok(&w, mpm_step(w.stepper, 1e-9, NULL));
+    const double wanted = h * h / (2.0 * dim * 16.0 * host_viscosity);
+    ck_within("viscosity", world_stable_dt(&w), wanted, 1e-13 * wanted);
+    world_close(&w);
+  }
+}
+END_TEST
+
 /* ---- refusals ------------------------------------------------------------------------------------------ */
 START_TEST(refusals) {
   mpm_context *c = context_with(1, 0, NULL);
@@ -634,6 +666,7 @@ Suite *lagrangian_suite(void) {
   tcase_add_loop_test(parts, begun_anew, 0, BROAD);
   tcase_add_test(parts, periodic_axes);
   tcase_add_test(parts, stable_step);
+  tcase_add_test(parts, stable_step_of_host_laws);
   tcase_add_test(parts, refusals);
   tcase_add_test(parts, states_know_their_grid);
   suite_add_tcase(suite, parts);
