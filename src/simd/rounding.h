@@ -16,6 +16,23 @@ MPMI_INLINE mpmi_lanes mpmi_lanes_round(mpmi_lanes v) {
   return (v + MPMI_ROUNDING_SHIFT) - MPMI_ROUNDING_SHIFT;
 }
 
+/* What lies half-way between two integers but for rounding, or not at all: a hair. */
+#define MPMI_HAIR 1e-10
+
+/* Of the nearest integer and the one beyond x, these return the even one where x is half-way between them,
+ * which is so whatever was contracted on the way to x; f = x - nearest. */
+MPMI_INLINE double mpmi_even_of(double nearest, double f) {
+  const double half = 0.5 * nearest, away = f < 0.0 ? -f : f;
+  if (away < 0.5 - MPMI_HAIR || half == mpmi_round(half)) return nearest;
+  return nearest + (f < 0.0 ? -1.0 : 1.0);
+}
+MPMI_INLINE mpmi_lanes mpmi_lanes_even_of(mpmi_lanes nearest, mpmi_lanes f) {
+  const mpmi_lanes zero = {0.0}, half = 0.5 * nearest;
+  const mpmi_lanes beyond = nearest + mpmi_lanes_select(f < 0.0, zero - 1.0, zero + 1.0);
+  const mpmi_mask stays = (mpmi_lanes_abs(f) < 0.5 - MPMI_HAIR) | (half == mpmi_lanes_round(half));
+  return mpmi_lanes_select(stays, nearest, beyond);
+}
+
 /* x as a double of its own: where it is a product, no sum around it becomes a fused multiply-add. */
 MPMI_INLINE double mpmi_rounded(double x) {
   volatile double rounded = x;

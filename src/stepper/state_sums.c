@@ -63,8 +63,8 @@ static mpm_status refused(mpm_stepper *s, int32_t m, mpm_status status, const mp
 
 static mpm_status not_finite(mpm_stepper *s, int32_t m, const mpmi_law_batch *b, mpmi_failure *failure) {
   int64_t p = 0;
-  while (p + 1 < b->batch.n &&
-         (b->batch.id[p] < 0 || (isfinite(b->wave_speed[p]) && isfinite(b->viscosity[p]))))
+  while (p + 1 < b->batch.n && (b->batch.id[p] < 0 || (isfinite(b->wave_speed[p]) &&
+                                                       b->wave_speed[p] >= 0.0 && isfinite(b->viscosity[p]))))
     ++p;
   if (failure)
     *failure = mpmi_particle_failure(MPM_NONFINITE, m, b->batch.id[p], "the wave speed is not finite");

@@ -26,7 +26,7 @@
 /* A particle that reaches less than this far, in cells, beyond where a node's function begins does not reach
  * it. Fills put particles so that they end there, and rounding must not decide whether a node has a weight:
  * one of 1e-33 has a velocity as others do, which counts where gradients do (USL). Weights jump by 1e-20. */
-#define MPMI_LEAST_REACH 1e-10
+#define MPMI_LEAST_REACH MPMI_HAIR
 
 enum { EVEN, UNEVEN };
 

@@ -5,13 +5,16 @@
 MPMI_INLINE mpmi_lanes bspline2_lanes(const mpmi_axis *a, mpmi_lanes x, int32_t gradient, mpmi_lanes *w,
                                       mpmi_lanes *g, mpmi_lanes *first) {
   const double inverse = a->inverse_spacing;
-  const mpmi_lanes xi = (x - a->origin) * inverse, middle = mpmi_lanes_round(xi);
-  const mpmi_lanes f = xi - middle; /* in [-1/2, 1/2] */
+  const mpmi_lanes xi = (x - a->origin) * inverse;
+  mpmi_lanes middle = mpmi_lanes_round(xi), f = xi - middle; /* in [-1/2, 1/2] */
   mpmi_lanes below = 0.5 - f, above = 0.5 + f;
-  if (a->still) { /* in the middle of a cell; those that move are not there for long */
-    const mpmi_lanes zero = {0.0};
-    below = mpmi_lanes_select(below > MPMI_LEAST_REACH, below, zero);
-    above = mpmi_lanes_select(above > MPMI_LEAST_REACH, above, zero);
+  /* in the middle of a cell, where those that move are not for long: with other particles there */
+  if (a->still && mpmi_lanes_any((below <= MPMI_LEAST_REACH) | (above <= MPMI_LEAST_REACH), 1)) {
+    const mpmi_lanes zero = {0.0}, even = mpmi_lanes_even_of(middle, f);
+    f -= even - middle;
+    middle = even;
+    below = mpmi_lanes_select(0.5 - f > MPMI_LEAST_REACH, 0.5 - f, zero);
+    above = mpmi_lanes_select(0.5 + f > MPMI_LEAST_REACH, 0.5 + f, zero);
   }
   w[0] = 0.5 * below * below;
   w[1] = 0.75 - f * f;

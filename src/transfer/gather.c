@@ -96,9 +96,8 @@ MPMI_INLINE void keep_partial(int32_t dim, mpmi_taking t, const mpmi_partial *of
   if (t.moment) store_columns(dim, t.part, of->M, p, out->M);
 }
 
-/* Gathers from a layer of nodes, which have one place along the first axis: what is common to the particles
- * that differ along that axis alone. `ends` is their number along each of the
- * others. */
+/* Gathers from a layer of nodes, which have one place along the first axis, what is common to the particles
+ * that differ along that axis alone; there are `ends` of them along each other one. */
 MPMI_INLINE void gather_layer(int32_t dim, int32_t width, mpmi_taking t, int32_t ends, const mpmi_weights *W,
                               const double *inverse_spacing, int64_t p, const double *corner,
                               mpmi_partial *layer) {

@@ -141,6 +141,14 @@ START_TEST(clusters_take_what_their_particles_do) {
 END_TEST
 
 /* ---- order -------------------------------------------------------------------------------------------- */
+/* Returns the node whose stencil a particle has on quadratic splines: of two that are as near, the even one.
+ * */
+static int64_t node_of(const mpm_particles *set, double x) {
+  const double xi = x / set->grid->desc.spacing[0];
+  const int64_t nearest = llround(xi), other = nearest + (xi < (double)nearest ? -1 : 1);
+  return fabs(xi - (double)nearest) > 0.5 - 1e-9 && nearest % 2 ? other : nearest;
+}
+
 /* Returns whether the particles in some slots are a cluster of cells of the quadratic basis. */
 static int32_t is_cluster(const mpm_particles *set, int32_t dim, int64_t slot) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
@@ -149,7 +157,7 @@ static int32_t is_cluster(const mpm_particles *set, int32_t dim, int64_t slot) {
     for (int32_t k = 0; k < dim; ++k) {
       const double *x = mpmi_places(set, 0) + k * set->ld + slot;
       const int32_t end = i & 1 << (dim - 1 - k);
-      if (x[i] != x[end] || llround(x[i]) != llround(x[0]) || (end && !(x[end] > x[0]))) return 0;
+      if (x[i] != x[end] || node_of(set, x[i]) != node_of(set, x[0]) || (end && !(x[end] > x[0]))) return 0;
     }
   }
   return 1;
@@ -170,10 +178,13 @@ static void shuffle(int64_t n, int64_t *order, dice *d) {
   }
 }
 
-/* Adds a lattice of side^dim particles in random order, per_cell along an axis of a cell, and one that stands
- * where the first one of the lattice does. Leaves one of them out, unless `but` is below 0. */
-static void add_lattice(world *w, mpm_particles *set, int64_t side, int32_t per_cell, int64_t but) {
+/* Adds a lattice of side^dim particles from cell `begin` on in random order, per_cell along an axis of a
+ * cell, and one that stands where the first one of the lattice does. Leaves one of them out, unless `but` is
+ * below 0. */
+static void add_lattice(world *w, mpm_particles *set, double begin, int64_t side, int32_t per_cell,
+                        int64_t but) {
   const int32_t dim = w->dim;
+  const double h = w->desc.grid.spacing[0];
   int64_t n = 1, count = 0;
   for (int32_t k = 0; k < dim; ++k) n *= side;
   const int64_t all = n + (but < 0);
@@ -184,10 +195,10 @@ static void add_lattice(world *w, mpm_particles *set, int64_t side, int32_t per_
   for (int64_t id = 0; id <= n; ++id) {
     if (id == but) continue;
     ids[count] = id;
-    volume[count] = pow(1.0 / per_cell, dim);
+    volume[count] = pow(h / per_cell, dim);
     int64_t at = id < n ? order[id] : 0;
     for (int32_t k = 0; k < dim; ++k, at /= side)
-      x[k * all + count] = 4.5 + ((double)(at % side) + 0.5) / per_cell;
+      x[k * all + count] = h * (begin + ((double)(at % side) + 0.5) / per_cell);
     ++count;
   }
   ck_ok(w, mpm_particles_add(set, all, x, NULL, volume, NULL, ids, NULL));
@@ -199,7 +210,7 @@ static mpm_particles *open_lattice(world *w, int32_t dim, int32_t lagrangian, in
   world_desc desc = world_default(dim, 24, 1.0);
   desc.grid.total_lagrangian = lagrangian;
   mpm_particles *set = world_open(w, &desc);
-  add_lattice(w, set, side, per_cell, -1);
+  add_lattice(w, set, 4.5, side, per_cell, -1);
   world_step(w, 1e-3);
   return set;
 }
@@ -241,7 +252,7 @@ START_TEST(broken_clusters_are_sorted) {
     ck_ok(&w, mpm_particles_remove(set, 1, &but));
     world_step(&w, 1e-3);
     mpm_particles *without = world_open(&other, &desc);
-    add_lattice(&other, without, 18, 2, but);
+    add_lattice(&other, without, 4.5, 18, 2, but);
     world_step(&other, 1e-3);
     ck_assert_int_eq(set->slots, without->slots);
     const int64_t *id = mpmi_i64(set, MPMI_ID, 0), *wanted = mpmi_i64(without, MPMI_ID, 0);
@@ -277,6 +288,34 @@ START_TEST(sorts_leave_others_in_order) {
 }
 END_TEST
 
+/* Three, or one, along an axis of whole cells: those in the middle of cells, and those that are so but for
+ * rounding, have the stencil of the even node, with which they are four, or two, there. Over the face of a
+ * grid with an odd number of cells and period they do not go, and no particle is lost. */
+static const struct {
+  double h;
+  int32_t per_cell, is_periodic;
+  int64_t cells, pairs; /* of the lattice; along an axis */
+} middles[] = {{1.0, 3, 0, 6, 9}, {0.1, 3, 0, 6, 9}, {1.0 / 30.0, 1, 0, 8, 3}, {0.1, 3, 1, 13, 18}};
+START_TEST(middles_of_cells_go_along) {
+  const int32_t dim = 1 + _i % 3, i = _i / 3;
+  const int64_t side = middles[i].cells * middles[i].per_cell;
+  world w;
+  world_desc desc = world_default(dim, middles[i].is_periodic ? middles[i].cells : 24, middles[i].h);
+  desc.grid.total_lagrangian = 1;
+  for (int32_t k = 0; k < dim; ++k) desc.grid.periodic[k] = middles[i].is_periodic;
+  mpm_particles *set = world_open(&w, &desc);
+  add_lattice(&w, set, middles[i].is_periodic ? 0.0 : 4.0, side, middles[i].per_cell, -1);
+  world_step(&w, 1e-6);
+  int64_t expected = 1, ids = 0;
+  for (int32_t k = 0; k < dim; ++k) expected *= middles[i].pairs;
+  ck_assert_int_eq(clusters_of(set, dim), expected);
+  for (int64_t s = 0; s < set->slots; ++s)
+    if (mpmi_i64(set, MPMI_ID, 0)[s] >= 0) ids += mpmi_i64(set, MPMI_ID, 0)[s];
+  ck_assert_int_eq(ids, (set->count - 1) * set->count / 2);
+  world_close(&w);
+}
+END_TEST
+
 TCase *clusters_case(void) {
   TCase *tc = tcase_create("clusters");
   tcase_add_loop_test(tc, clusters_give_what_their_particles_do, 0, SETTINGS);
@@ -284,5 +323,6 @@ TCase *clusters_case(void) {
   tcase_add_loop_test(tc, sorts_put_clusters_in_front, 0, 6);
   tcase_add_loop_test(tc, broken_clusters_are_sorted, 0, 3);
   tcase_add_loop_test(tc, sorts_leave_others_in_order, 0, 3);
+  tcase_add_loop_test(tc, middles_of_cells_go_along, 0, 12);
   return tc;
 }

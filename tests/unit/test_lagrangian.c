@@ -522,6 +522,14 @@ START_TEST(sections_of_rings) {
 }
 END_TEST
 
+/* Gives all particles the part of F that their grid has. */
+static void set_gradient(world *w, mpm_particles *set, const double (*F)[3]) {
+  double own[9];
+  for (int32_t e = 0; e < 9; ++e)
+    own[e] = e / 3 < w->dim && e % 3 < w->dim ? F[e / 3][e % 3] : e % 4 ? 0.0 : 1.0;
+  ck_ok(w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, own));
+}
+
 /* The stable step shrinks with what is pressed together, and not with speed. */
 START_TEST(stable_step) {
   for (int32_t dim = 1; dim <= 3; ++dim) {
@@ -540,6 +548,11 @@ START_TEST(stable_step) {
     ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, dim, still));
     ck_ok(&w, mpm_step(w.stepper, 1e-3 * pressed, NULL)); /* without stress nothing moves */
     ck_within("a step later", world_stable_dt(&w), pressed, 1e-13 * pressed);
+    set_gradient(&w, set, (const double[3][3]){{2.0, 0.5, 0.1}, {0.3, 1.0, 0.2}, {0.0, 0.7, 1.3}});
+    ck_ok(&w, mpm_step(w.stepper, 1e-3 * pressed, NULL));
+    const double by_step = world_stable_dt(&w);
+    ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, dim, still)); /* asks anew */
+    ck_holds(world_stable_dt(&w) == by_step);
     world_close(&w);
   }
 }
@@ -568,6 +581,10 @@ START_TEST(stable_step_of_host_laws) {
     const double F[9] = {0.25, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}, h = w.desc.grid.spacing[0];
     ck_ok(&w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, F));
     ck_within("waves", world_stable_dt(&w), h / 3600.0, 1e-14 * h / 3600.0);
+    const double stretch = dim == 1 ? 0.5 : dim == 2 ? sqrt(1.25) : 2.0; /* rows of F^-1 F^-T: 9/16, 5/4, 4 */
+    set_gradient(&w, set, (const double[3][3]){{2.0, 0.5, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 0.5}});
+    ck_within("shear", world_stable_dt(&w) * 900.0 * stretch, h, 1e-14 * h);
+    ck_ok(&w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, F));
     host_viscosity = 7e3;
     ck_ok(&w, mpm_step(w.stepper, 1e-9, NULL));
     const double wanted = h * h / (2.0 * dim * 16.0 * host_viscosity);
