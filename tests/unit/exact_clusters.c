@@ -140,6 +140,38 @@ START_TEST(clusters_take_what_their_particles_do) {
 }
 END_TEST
 
+/* Within a hair of the middle of a cell the stencil is that of the even node, on whose far side nothing is
+ * met; beyond it, that of the nearest one. Off by so many cells from the middle between node 5, or 6, and the
+ * next: */
+START_TEST(middles_have_the_even_node) {
+  static const double off[MPMI_CHUNK / 2] = {0.0, 1e-15, -1e-15, 5e-11, -5e-11, 1e-9, -1e-9, 0.25};
+  const int32_t isa = MPM_ISA_BASELINE + _i;
+  if (!has_isa(isa)) return;
+  _Alignas(64) double x[MPMI_CHUNK];
+  const mpmi_axis axis = {.spacing = 1.0, .inverse_spacing = 1.0, .last_cell = 15.0, .still = 1};
+  const mpmi_points points = {.x = {x}};
+  mpmi_weights W;
+  for (int32_t p = 0; p < MPMI_CHUNK; ++p) x[p] = 5.5 + p / (MPMI_CHUNK / 2) + off[p % (MPMI_CHUNK / 2)];
+  mpmi_kernels_of(isa)->weights[MPMI_FAMILY_BSPLINE2][1](&axis, MPMI_NEED_GRADIENT, &points, 0, MPMI_CHUNK,
+                                                         &W);
+  for (int32_t p = 0; p < MPMI_CHUNK; ++p) {
+    const double from = fabs(off[p % (MPMI_CHUNK / 2)]);
+    const int64_t node = from < 1e-10 ? 6 : llround(x[p]), first = node - 1;
+    double sum = 0.0, place = 0.0, slope = 0.0;
+    ck_assert_int_eq(W.node[p], first);
+    for (int32_t k = 0; k < 3; ++k) {
+      sum += W.w[0][k][p], place += W.w[0][k][p] * (double)(first + k);
+      slope += W.g[0][k][p] * ((double)(first + k) - x[p]);
+    }
+    ck_within("sum", sum, 1.0, 2e-10);
+    ck_within("place", place, x[p], 2e-10);
+    ck_within("slope", slope, 1.0, 2e-10);
+    ck_within("first", W.first[0][p], (double)first - x[p], 1e-14);
+    if (from < 1e-10) ck_holds(W.w[0][x[p] < 6.0 ? 2 : 0][p] == 0.0 && W.g[0][x[p] < 6.0 ? 2 : 0][p] == 0.0);
+  }
+}
+END_TEST
+
 /* ---- order -------------------------------------------------------------------------------------------- */
 /* Returns the node whose stencil a particle has on quadratic splines: of two that are as near, the even one.
  * */
@@ -320,6 +352,7 @@ TCase *clusters_case(void) {
   TCase *tc = tcase_create("clusters");
   tcase_add_loop_test(tc, clusters_give_what_their_particles_do, 0, SETTINGS);
   tcase_add_loop_test(tc, clusters_take_what_their_particles_do, 0, SETTINGS);
+  tcase_add_loop_test(tc, middles_have_the_even_node, 0, ISAS);
   tcase_add_loop_test(tc, sorts_put_clusters_in_front, 0, 6);
   tcase_add_loop_test(tc, broken_clusters_are_sorted, 0, 3);
   tcase_add_loop_test(tc, sorts_leave_others_in_order, 0, 3);
