@@ -15,8 +15,9 @@ enum { MOST_OF_STENCIL = 128, MOST_STENCILS = 512 };
 _Static_assert(STENCILS(1) <= MOST_STENCILS && STENCILS(2) <= MOST_STENCILS && STENCILS(3) <= MOST_STENCILS,
                "a block has more stencils");
 
-/* Returns where the stencil of quadratic splines is, -1, 0 or 1 node away from the anchor, of a particle in
- * the middle of a cell: kernels take the even one of the two nodes (transfer/bspline2.c). */
+/* Returns how many nodes the stencil of a particle is away from its anchor: in the middle of a cell kernels
+ * of quadratic splines take the even one of the two nodes (transfer/bspline2.c), which is 1, 0 or -1; else 0.
+ * */
 static int32_t beside_anchor(const mpm_grid *grid, int32_t axis, double x) {
   if (grid->family != MPMI_FAMILY_BSPLINE2) return 0;
   const double xi = (x - grid->desc.origin[axis]) * grid->inverse_spacing[axis], nearest = mpmi_round(xi);

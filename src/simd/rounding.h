@@ -16,11 +16,11 @@ MPMI_INLINE mpmi_lanes mpmi_lanes_round(mpmi_lanes v) {
   return (v + MPMI_ROUNDING_SHIFT) - MPMI_ROUNDING_SHIFT;
 }
 
-/* What lies half-way between two integers but for rounding, or not at all: a hair. */
+/* A number that is off by no more than this from half-way between two integers counts as lying there. */
 #define MPMI_HAIR 1e-10
 
-/* Of the nearest integer and the one beyond x, these return the even one where x is half-way between them,
- * which is so whatever was contracted on the way to x; f = x - nearest. */
+/* Of the two integers beside a number half-way between them these return the even one, whatever was
+ * contracted on the way to the number, and else the nearest one; f is the number less the nearest one. */
 MPMI_INLINE double mpmi_even_of(double nearest, double f) {
   const double half = 0.5 * nearest, away = f < 0.0 ? -f : f;
   if (away < 0.5 - MPMI_HAIR || half == mpmi_round(half)) return nearest;

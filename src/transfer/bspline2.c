@@ -8,8 +8,9 @@ MPMI_INLINE mpmi_lanes bspline2_lanes(const mpmi_axis *a, mpmi_lanes x, int32_t 
   const mpmi_lanes xi = (x - a->origin) * inverse;
   mpmi_lanes middle = mpmi_lanes_round(xi), f = xi - middle; /* in [-1/2, 1/2] */
   mpmi_lanes below = 0.5 - f, above = 0.5 + f;
-  /* in the middle of a cell, where those that move are not for long: with other particles there */
-  if (a->still && mpmi_lanes_any((below <= MPMI_LEAST_REACH) | (above <= MPMI_LEAST_REACH), 1)) {
+  /* A particle in the middle of a cell goes with the even node, as others there do. Those that move are not
+   * there for long. */
+  if (a->still && mpmi_lanes_any(mpmi_lanes_abs(f) >= 0.5 - MPMI_HAIR, 1)) {
     const mpmi_lanes zero = {0.0}, even = mpmi_lanes_even_of(middle, f);
     f -= even - middle;
     middle = even;
