@@ -1,5 +1,6 @@
 #include "grid/blocks.h"
 #include "context/radix.h"
+#include "simd/rounding.h"
 
 #include <math.h>
 #include <string.h>
@@ -271,11 +272,18 @@ mpm_status mpmi_blocks_order(mpmi_blocks *b) {
   return MPM_OK;
 }
 
+/* Returns the nearest node as the kernel of the basis has it. */
+static double nearest_node(const mpm_grid *grid, double xi) {
+  if (!mpmi_is_total_lagrangian(grid) || grid->family != MPMI_FAMILY_BSPLINE2) return floor(xi + 0.5);
+  const double nearest = mpmi_round(xi);
+  return mpmi_even_of(nearest, xi - nearest);
+}
+
 int32_t mpmi_anchor(const mpm_grid *grid, int32_t axis, double x) {
   const double xi = (x - grid->desc.origin[axis]) * grid->inverse_spacing[axis];
   const int64_t cells = grid->desc.cells[axis];
   /* a position that a host has spoilt behind the library's back has no anchor: any will do */
-  const double place = floor(grid->centred ? xi + 0.5 : xi), far = 1e15;
+  const double place = grid->centred ? nearest_node(grid, xi) : floor(xi), far = 1e15;
   int64_t node = (int64_t)(!(place > -far) ? -far : place < far ? place : far);
   if (grid->desc.periodic[axis]) node -= floor_div(node, cells) * cells;
   const int64_t high = grid->centred ? cells : cells - 1;

@@ -38,11 +38,9 @@ struct mpm_grid {
   int32_t domains; /* MPMI_DOMAINS_... */
   int32_t width;   /* nodes of the stencil per axis */
   int32_t below;   /* how many of these lie below the anchor */
-  int32_t
-      centred; /* 1: the anchor is the nearest node, to a hair in the middle of a cell; 0: the lower node of
-                      the cell */
-  int32_t ghosts; /* 1: there are nodes beyond the faces, -1 and cells + 1 */
-  double moment;  /* sum w (x_i - x_p)^2 / h^2 where that is the same everywhere, else 0 */
+  int32_t centred; /* 1: the anchor is the nearest node; 0: the lower node of the cell */
+  int32_t ghosts;  /* 1: there are nodes beyond the faces, -1 and cells + 1 */
+  double moment;   /* sum w (x_i - x_p)^2 / h^2 where that is the same everywhere, else 0 */
   double upper[3], inverse_spacing[3];
   double h_min; /* smallest spacing */
 };

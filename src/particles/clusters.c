@@ -1,40 +1,22 @@
 #include "particles/clusters.h"
 
-#include <math.h>
 #include <string.h>
 
-#include "simd/rounding.h"
-
 /* Stencils with more particles are not looked at: the search takes a time that grows with their square. */
-enum { MOST_OF_STENCIL = 128, MOST_STENCILS = 512 };
-/* The stencils that particles of a block have along an axis: one for each node, and those of its neighbours.
- * */
-#define ALONG(dim) (MPMI_BLOCK_EDGE(dim) + 2)
-#define STENCILS(dim)                                                                                        \
-  ((dim) == 1 ? ALONG(1) : (dim) == 2 ? ALONG(2) * ALONG(2) : ALONG(3) * ALONG(3) * ALONG(3))
-_Static_assert(STENCILS(1) <= MOST_STENCILS && STENCILS(2) <= MOST_STENCILS && STENCILS(3) <= MOST_STENCILS,
+enum { MOST_OF_STENCIL = 128, MOST_STENCILS = 256 };
+#define STENCILS(edge, dim) ((dim) == 1 ? (edge) : (dim) == 2 ? (edge) * (edge) : (edge) * (edge) * (edge))
+_Static_assert(STENCILS(MPMI_BLOCK_EDGE(1), 1) <= MOST_STENCILS &&
+                   STENCILS(MPMI_BLOCK_EDGE(2), 2) <= MOST_STENCILS &&
+                   STENCILS(MPMI_BLOCK_EDGE(3), 3) <= MOST_STENCILS,
                "a block has more stencils");
-
-/* Returns how many nodes the stencil of a particle is away from its anchor: in the middle of a cell kernels
- * of quadratic splines take the even one of the two nodes (transfer/bspline2.c), which is 1, 0 or -1; else 0.
- * */
-static int32_t beside_anchor(const mpm_grid *grid, int32_t axis, double x) {
-  if (grid->family != MPMI_FAMILY_BSPLINE2) return 0;
-  const double xi = (x - grid->desc.origin[axis]) * grid->inverse_spacing[axis], nearest = mpmi_round(xi);
-  const double node = mpmi_even_of(nearest, xi - nearest), anchor = floor(xi + 0.5);
-  return (node > anchor) - (node < anchor);
-}
 
 /* Returns which of the stencils of its block the particle in a slot has. */
 static int32_t stencil_of(const mpm_particles *set, int64_t slot) {
   const mpm_grid *grid = set->grid;
-  const int32_t dim = grid->dim;
+  const int32_t edge = MPMI_BLOCK_EDGE(grid->dim);
   int32_t stencil = 0;
-  for (int32_t k = 0; k < dim; ++k) {
-    const double x = mpmi_places(set, 0)[k * set->ld + slot];
-    const int32_t place = mpmi_anchor(grid, k, x) % MPMI_BLOCK_EDGE(dim);
-    stencil = stencil * ALONG(dim) + 1 + place + beside_anchor(grid, k, x);
-  }
+  for (int32_t k = 0; k < grid->dim; ++k)
+    stencil = stencil * edge + mpmi_anchor(grid, k, mpmi_places(set, 0)[k * set->ld + slot]) % edge;
   return stencil;
 }
 
@@ -94,7 +76,7 @@ static int32_t begins_cluster(int32_t size, int32_t n, const candidate *list) {
 
 void mpmi_clusters_first(const mpm_particles *set, int64_t count, uint32_t *source, uint32_t *room) {
   const int32_t dim = set->grid->dim, size = 1 << dim;
-  const int32_t stencils = STENCILS(dim);
+  const int32_t stencils = STENCILS(MPMI_BLOCK_EDGE(dim), dim);
   int64_t end[MOST_STENCILS + 1] = {0};
   for (int64_t i = 0; i < count; ++i) ++end[stencil_of(set, source[i]) + 1];
   for (int32_t c = 0; c < stencils; ++c) end[c + 1] += end[c];

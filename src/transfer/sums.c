@@ -170,6 +170,7 @@ MPMI_INLINE uint32_t sum_batch(int32_t dim, const mpmi_sums_job *job, int64_t n,
   for (int32_t k = 0; k < 3; ++k) t.momentum[k] = t.angular[k] = zero;
   set_rate(dim, job, sums->rate, &t);
   for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) add_group(dim, job, s, &t);
+  /* apart from the others, which are compiled to the same without it */
   if (job->what & MPMI_SUMS_MOTION && job->F[0] && job->affine[0])
     for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) add_reference_angular(dim, job, s, &t);
   double sum[SUMMED] = {0.0};
