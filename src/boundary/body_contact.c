@@ -295,12 +295,19 @@ static double keep(mpmi_bound *bound, mpmi_touch *touch) {
 /* ---- meetings ------------------------------------------------------------------------------------------ */
 typedef struct contact_job {
   mpmi_bound *bound;
-  int32_t keeps, first_round;
+  int32_t keeps, round; /* MPMI_FIRST_ROUND ... */
 } contact_job;
+
+/* Returns 1 where leaders take part that light nodes have given to, and no node that is led. */
+static int32_t was_given(const mpmi_contact_nodes *contact, const mpmi_touch *touch) {
+  const mpmi_party *a = &contact->party[touch->party[0]], *b = &contact->party[touch->party[1]];
+  return (a->leads || b->leads) && !a->led && !b->led;
+}
 
 static double act_once(const contact_job *job, mpmi_touch *touch) {
   if (job->keeps) return keep(job->bound, touch);
-  if (touch->open) return 0.0;
+  if (touch->open || (job->round == MPMI_LAST_ROUND && !was_given(&job->bound->nodes->contact, touch)))
+    return 0.0;
   return touch->rule->kind == MPM_CONTACT_TIED ? tie(job->bound, touch) : push(job->bound, touch);
 }
 
@@ -317,7 +324,7 @@ static int32_t is_settled_at_once(const mpmi_contact_nodes *contact, const mpmi_
 
 static void begin_meeting(const contact_job *job, const mpmi_meeting *meeting) {
   mpmi_contact_nodes *contact = &job->bound->nodes->contact;
-  if (!job->first_round) return;
+  if (job->round != MPMI_FIRST_ROUND) return;
   for (int64_t p = 0; p < meeting->party_count && job->keeps; ++p)
     weigh_party(job->bound, &contact->party[meeting->first_party + p], 1);
   for (int64_t i = 0; i < meeting->touch_count && !job->keeps; ++i) {
@@ -401,16 +408,6 @@ static void sweep_task(void *data, int64_t k) {
   job->bound->step->work->report[k].contact_change = most;
 }
 
-mpm_status mpmi_body_contacts_place(mpmi_bound *bound) {
-  mpmi_contact_nodes *contact = &bound->nodes->contact;
-  mpmi_contact_search search = {
-      .step = bound->step, .nodes = bound->nodes, .values = bound->values, .contact = contact};
-  if (contact->measured || !contact->site_count) return MPM_OK;
-  const mpm_status status = mpmi_sites_measure(&search);
-  contact->measured = !status;
-  return status;
-}
-
 mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   mpmi_contact_nodes *contact = &bound->nodes->contact;
   mpmi_contact_search search = {
@@ -419,7 +416,7 @@ mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   mpmi_rigid_surfaces_predict(contact, bound->step->settings, bound->step->velocity_dt);
   if (!contact->site_count) return MPM_OK;
   if (!contact->listed) {
-    status = mpmi_body_contacts_place(bound);
+    status = mpmi_sites_measure(&search);
     if (!status) status = mpmi_meetings_find(&search);
     if (!status && contact->touch_count) status = mpmi_clouds_fill(&search);
     if (!status && contact->touch_count) status = mpmi_surface_gaps_find(&search);
@@ -443,13 +440,13 @@ mpm_status mpmi_body_contacts_find_after(mpmi_bound *bound, double moved) {
   return status ? status : mpmi_gaps_find_after(&search);
 }
 
-mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t first_round, double *most) {
+mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t round, double *most) {
   const mpmi_settings *settings = bound->step->settings;
-  contact_job job = {bound, keeps, first_round};
+  contact_job job = {bound, keeps, round};
   *most = 0.0;
   mpm_status status = MPM_OK;
   if (mpmi_bodies_touch(bound)) status = mpmi_run_tasks(settings, 0, settings->tasks, sweep_task, &job);
-  if (!status && !keeps) status = sweep_coupled(&job, most);
+  if (!status && !keeps && round != MPMI_LAST_ROUND) status = sweep_coupled(&job, most);
   if (status || !mpmi_bodies_touch(bound)) return status;
   for (int32_t k = 0; k < settings->tasks; ++k)
     *most = fmax(*most, bound->step->work->report[k].contact_change);

@@ -98,6 +98,9 @@ mpm_status mpmi_ties_unfold(mpmi_bound *bound);
 /* ---- light_nodes.c ----------------------------------------------------------------------------------- */
 /* Lets light nodes go with heavier ones beside them, which take their forces. */
 mpm_status mpmi_light_nodes_lead(mpmi_bound *bound);
+/* Does so once more where bodies may touch: contact has changed those that lead, and those that go with
+ * them. Parties of contact know then whether they are led, and whether they lead. */
+mpm_status mpmi_light_nodes_lead_again(mpmi_bound *bound);
 
 /* ---- damping.c --------------------------------------------------------------------------------------- */
 /* Changes the increments of what nothing holds by local and mass damping; does nothing without them. */
@@ -128,16 +131,17 @@ mpm_status mpmi_prescribed_share(mpmi_bound *bound);
 static inline int32_t mpmi_bodies_touch(const mpmi_bound *bound) {
   return bound->nodes->contact.touch_count > 0;
 }
-/* Finds which nodes are near surfaces of obstacles and walls. */
-mpm_status mpmi_body_contacts_place(mpmi_bound *bound);
 /* Finds where bodies may touch, and asks the host for coefficients of friction. */
 mpm_status mpmi_body_contacts_find(mpmi_bound *bound);
 /* Finds the gaps of the touches that are asked for them where particles have come to, so many cells away at
  * most. */
 mpm_status mpmi_body_contacts_find_after(mpmi_bound *bound, double moved);
+/* Rounds of contact: the first one of a projection, those that go on from there, and those that go on where
+ * light nodes have given to their leaders after that; free obstacles are left as they are then. */
+enum { MPMI_FIRST_ROUND, MPMI_NEXT_ROUND, MPMI_LAST_ROUND };
 /* Lets bodies act on each other, or with keeps, in a projection without forces, keeps their contacts as they
- * were found. Rounds after the first go on from there. *most becomes the largest velocity that changed. */
-mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t first_round, double *most);
+ * were found. *most becomes the largest velocity that changed. */
+mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t round, double *most);
 /* Adds up what they did, for reports. */
 void mpmi_body_contacts_sum(mpmi_bound *bound);
 

@@ -1,12 +1,10 @@
 /* Who leads a light node: heavier ones beside it, along lines of nodes that have a second heavy one, and how
  * much of its motion is each one's (docs/theory.md, 7.1). */
 #include "boundary/light_leaders.h"
-#include "contact/contact.h"
 
 #include <math.h>
 
-/* Up to this share of mass a node goes with others where no line has its second node, and where it may touch
- * another body. */
+/* Up to this share of mass a node goes with others where no line has its second node. */
 #define LEAST_SHARE 1e-5
 
 /* A node from which others are looked at. */
@@ -19,9 +17,7 @@ typedef struct spot {
 mpmi_light_search mpmi_light_search_of(const mpmi_bound *bound) {
   const mpmi_settings *settings = bound->step->settings;
   const int32_t edge = bound->step->layout->blocks.edge;
-  mpmi_light_search s = {.bound = bound,
-                         .ties = mpmi_constraints_of(bound)->tie_count > 0,
-                         .throws = settings->desc.scheme == MPM_USL || mpmi_is_affine(settings)};
+  mpmi_light_search s = {.bound = bound, .ties = mpmi_constraints_of(bound)->tie_count > 0};
   for (int32_t face = 0; face < 2 * bound->dim; ++face)
     if (mpmi_wall_kind_of(settings->wall[face].kind)->holds != MPMI_HOLDS_NOTHING)
       s.hold[s.hold_count++] = face;
@@ -98,22 +94,12 @@ static double whole_mass(const mpmi_light_search *s, int64_t slot) {
 }
 
 /* ---- light or not -------------------------------------------------------------------------------------- */
-/* Returns 1 where contact may take the force on a node. */
-static int32_t may_touch(const mpmi_bound *bound, int64_t slot) {
-  const mpmi_contact_search search = {
-      .step = bound->step, .nodes = bound->nodes, .values = bound->values, .contact = &bound->nodes->contact};
-  return bound->nodes->contact.site_count && mpmi_may_touch(&search, slot);
-}
-
 /* Returns the share of the mass of a node beside, up to which one is light. A light material is no sliver of
- * the heavy one with which it is bonded. Where bodies touch, a node pushes the other body while it has its
- * own force: there only those go with others that would be thrown, which are few where particles are strained
- * by velocities that they have given, unless their matrices hand the gradient of a node back. */
+ * the heavy one with which it is bonded. */
 static double light_share(const mpmi_light_search *s, const spot *node) {
   const mpmi_layout *layout = s->bound->step->layout;
   const mpmi_densities *of = &layout->densities[layout->blocks.body[node->block]];
-  const double share = MPMI_LIGHT_SHARE * (of->least / of->most);
-  return !s->throws && may_touch(s->bound, node->slot) ? fmin(LEAST_SHARE, share) : share;
+  return MPMI_LIGHT_SHARE * (of->least / of->most);
 }
 
 static spot spot_of(const mpmi_light_search *s, int64_t slot, double mass) {

@@ -10,7 +10,6 @@ enum { MPMI_DIRECTIONS = 26 };
 /* What holds for all nodes of a projection. */
 typedef struct mpmi_light_search {
   const mpmi_bound *bound;
-  int32_t throws;                  /* light nodes would be thrown where bodies touch */
   int32_t ties;                    /* nodes are tied together somewhere */
   int32_t periodic;                /* some axis is */
   int32_t hold_count, hold[6];     /* faces with walls that hold components */

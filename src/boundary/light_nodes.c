@@ -44,7 +44,7 @@ static void find(const light_job *job, mpmi_light_node *node) {
   const mpmi_bound *bound = job->bound;
   const int64_t slot = listed_by(bound, node->slot);
   node->slot = -1;
-  node->count = 0;
+  node->count = node->kept = 0;
   if (slot < 0 || mpmi_moving_mass(bound, slot) > bound->step->layout->light_cut) return;
   node->slot = slot;
   mpmi_light_find_lines(&job->search, node);
@@ -63,18 +63,22 @@ static const mpmi_leader *leaders_of(const mpmi_bound *bound, const mpmi_light_n
   return bound->nodes->leader + node->first;
 }
 
+/* Returns 1 for a node in the plane of a wall that rubs nodes. */
+static int32_t rubs(const mpmi_bound *bound, int64_t slot, int32_t face) {
+  return mpmi_wall_kind_of(bound->step->settings->wall[face].kind)->rubs == MPMI_RUBS_NODES &&
+         mpmi_light_in_plane(bound, slot, face);
+}
+
 /* Returns 1 where a node goes with its own force into a wall that bears. */
 static int32_t is_pressed(const mpmi_bound *bound, const mpmi_light_node *node, int32_t face) {
   const int32_t k = face / 2;
-  if (mpmi_wall_kind_of(bound->step->settings->wall[face].kind)->rubs == MPMI_RUBS_NOT) return 0;
-  return (face % 2 ? 1.0 : -1.0) * (node->before[k] + node->gain[k]) > 0.0 &&
-         mpmi_light_in_plane(bound, node->slot, face);
+  return (face % 2 ? 1.0 : -1.0) * (node->before[k] + node->gain[k]) > 0.0 && rubs(bound, node->slot, face);
 }
 
-/* Returns the components, as bits, whose force a wall takes, so that leaders must not. */
+/* Returns the components, as bits, that do not go with leaders: a wall takes their force. */
 static int32_t borne_of(const light_job *job, const mpmi_light_node *node) {
   const mpmi_bound *bound = job->bound;
-  int32_t borne = mpmi_light_held(&job->search, node->slot);
+  int32_t borne = node->kept | mpmi_light_held(&job->search, node->slot);
   for (int32_t face = 0; face < 2 * bound->dim; ++face)
     if (is_pressed(bound, node, face))
       borne |= bound->step->settings->wall[face].friction > 0.0 ? 7 : 1 << face / 2;
@@ -189,18 +193,80 @@ static mpm_status find_leaders(light_job *job) {
 }
 
 /* All light nodes are looked at before any of them is changed: no result depends on their order. */
-mpm_status mpmi_light_nodes_lead(mpmi_bound *bound) {
+static mpm_status lead(light_job *job) {
+  mpmi_bound *bound = job->bound;
   const mpmi_nodes *nodes = bound->nodes;
-  if (!nodes->light_count) return MPM_OK;
-  light_job job = {bound, mpmi_light_search_of(bound)};
-  mpm_status status = mpmi_body_contacts_place(bound);
-  if (!status) status = find_leaders(&job);
+  mpm_status status = MPM_OK;
   for (int32_t round = 0; round < ROUNDS && !status; ++round) {
-    status = run(&job, look_task);
+    status = run(job, look_task);
     for (int64_t n = 0; n < nodes->light_count && !status; ++n)
       if (nodes->light[n].count) give_rest(bound, &nodes->light[n]);
   }
   for (int64_t n = 0; n < nodes->light_count && !status; ++n)
     if (nodes->light[n].count) follow(bound, &nodes->light[n]);
   return status;
+}
+
+mpm_status mpmi_light_nodes_lead(mpmi_bound *bound) {
+  if (!bound->nodes->light_count) return MPM_OK;
+  light_job job = {bound, mpmi_light_search_of(bound)};
+  const mpm_status status = find_leaders(&job);
+  return status ? status : lead(&job);
+}
+
+/* ---- once more ----------------------------------------------------------------------------------------- */
+/* Returns the components, as bits, of a node that its holder, or a wall that rubs it, has set. */
+static int32_t set_by_others(const mpmi_bound *bound, int64_t slot) {
+  int32_t set = 0;
+  for (int32_t c = 0; c < bound->dim; ++c)
+    if (mpmi_held_by(bound->nodes, slot, c)) set |= 1 << c;
+  for (int32_t face = 0; face < 2 * bound->dim; ++face)
+    if (rubs(bound, slot, face)) set = 7;
+  return set;
+}
+
+/* Finds anew what a node has to give. The forces are a part of its velocity by now. */
+static void begin_again(mpmi_bound *bound, mpmi_light_node *node) {
+  const mpmi_leader *leader = leaders_of(bound, node);
+  node->kept = set_by_others(bound, node->slot);
+  for (int32_t k = 0; k < node->count; ++k) node->kept |= set_by_others(bound, leader[k].slot);
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    double *v = mpmi_velocity(bound->values, node->slot);
+    node->gain[c] = mpmi_increment_of(bound, node->slot, c);
+    v[c] -= node->gain[c];
+    node->before[c] = v[c];
+  }
+}
+
+static mpmi_party *party_at(const mpmi_contact_nodes *contact, int64_t slot) {
+  const int64_t cloud = contact->cloud_of[slot];
+  return cloud < 0 ? NULL : &contact->party[contact->cloud[cloud].party];
+}
+
+/* Tells which parties are led, and which lead. */
+static void mark_parties(const mpmi_bound *bound) {
+  const mpmi_nodes *nodes = bound->nodes;
+  const mpmi_contact_nodes *contact = &nodes->contact;
+  for (int64_t p = 0; p < contact->party_count; ++p) contact->party[p].led = contact->party[p].leads = 0;
+  for (int64_t n = 0; n < nodes->light_count && contact->touch_count; ++n) {
+    const mpmi_light_node *node = &nodes->light[n];
+    if (!node->count) continue;
+    mpmi_party *party = party_at(contact, node->slot);
+    if (party) party->led = 1;
+    for (int32_t k = 0; k < node->count; ++k) {
+      party = party_at(contact, leaders_of(bound, node)[k].slot);
+      if (party) party->leads = 1;
+    }
+  }
+}
+
+mpm_status mpmi_light_nodes_lead_again(mpmi_bound *bound) {
+  const mpmi_nodes *nodes = bound->nodes;
+  if (!nodes->light_count || !nodes->contact.anywhere) return MPM_OK;
+  light_job job = {bound, mpmi_light_search_of(bound)};
+  for (int64_t n = 0; n < nodes->light_count; ++n)
+    if (nodes->light[n].count) begin_again(bound, &nodes->light[n]);
+  mark_parties(bound);
+  const mpm_status status = lead(&job);
+  return status ? status : mpmi_ties_hold_walls(bound);
 }

@@ -24,9 +24,6 @@ typedef struct mpmi_contact_search {
   int64_t moved; /* so many cells at most */
 } mpmi_contact_search;
 
-/* Returns 1 for a node, not one that follows another, at which its body may touch another one or a surface;
- * sites are measured. */
-int32_t mpmi_may_touch(const mpmi_contact_search *search, int64_t slot);
 /* Lists meetings, parties, touches and the clouds that they need, without particles. */
 mpm_status mpmi_meetings_find(mpmi_contact_search *search);
 /* Fills the clouds. */

@@ -33,35 +33,6 @@ static mpmi_party party_of_surface(const mpmi_contact_search *search, int64_t ne
   return party;
 }
 
-static const mpmi_site *site_of(const mpmi_contact_nodes *contact, int64_t block) {
-  int64_t low = 0, high = contact->site_count;
-  while (high - low > 1) {
-    const int64_t middle = low + (high - low) / 2;
-    *(contact->site[middle].blocks.first <= block ? &low : &high) = middle;
-  }
-  if (low == high) return NULL;
-  const mpmi_site *site = &contact->site[low];
-  return block >= site->blocks.first && block < site->blocks.first + site->blocks.count ? site : NULL;
-}
-
-int32_t mpmi_may_touch(const mpmi_contact_search *search, int64_t slot) {
-  const mpmi_blocks *b = &search->step->layout->blocks;
-  const mpmi_contact_nodes *contact = search->contact;
-  const mpmi_contact_rules *rules = &search->step->settings->contact;
-  const int64_t own = slot / b->nodes;
-  const int32_t n = (int32_t)(slot % b->nodes);
-  const mpmi_site *site = site_of(contact, own);
-  if (!site) return 0;
-  double sign;
-  for (int64_t i = site->blocks.first; i < site->blocks.first + site->blocks.count; ++i)
-    if (i != own && takes_part(search, i * b->nodes + n) &&
-        mpmi_contact_rule_of(rules, b->body[i], b->body[own], &sign)->kind != MPM_CONTACT_NONE)
-      return 1;
-  for (int64_t i = site->first_near; i < site->first_near + site->near_count; ++i)
-    if (near_value(search, i, MPMI_NEAR_DISTANCE, n) < (double)INFINITY) return 1;
-  return 0;
-}
-
 /* Goes through the meetings of a site; returns how many there are and adds the number of their parties. With
  * `fill` they are written from `meeting` and `party` on: bodies, then surfaces. */
 static int64_t visit_site(const mpmi_contact_search *search, const mpmi_site *site, int32_t fill,
@@ -70,6 +41,8 @@ static int64_t visit_site(const mpmi_contact_search *search, const mpmi_site *si
   mpmi_contact_nodes *contact = search->contact;
   const int64_t end = site->blocks.first + site->blocks.count;
   const int64_t end_near = site->first_near + site->near_count;
+  const mpmi_parts *parts = search->step->layout->parts;
+  const int32_t leads = !mpmi_is_implicit(search->step->settings); /* light nodes, across parts */
   int64_t meetings = 0;
   for (int32_t n = 0; n < b->nodes; ++n) {
     int64_t bodies = 0, surfaces = 0;
@@ -77,7 +50,8 @@ static int64_t visit_site(const mpmi_contact_search *search, const mpmi_site *si
     for (int64_t i = site->blocks.first; i < end; ++i) {
       if (end - i + bodies + site->near_count < 2) break; /* too few are left for a meeting */
       if (!takes_part(search, i * b->nodes + n)) continue;
-      counts |= mpmi_meets_node(search->step->layout->parts, i * b->nodes + n);
+      counts |=
+          leads ? mpmi_meets_at_node(parts, i * b->nodes + n) : mpmi_meets_node(parts, i * b->nodes + n);
       ++bodies;
     }
     for (int64_t i = site->first_near; i < end_near && counts; ++i)

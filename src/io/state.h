@@ -250,6 +250,8 @@ mpm_status mpmi_state_read_pieces(mpmi_state_loading *l);
 void mpmi_state_drop_storage(mpm_particles *fresh);
 /* Refuses bodies of the state that this stepper does not offer, with its rules. */
 mpm_status mpmi_state_check_bodies(mpmi_state_loading *l);
+/* Returns for what the layout is wide with the bodies of the state, MPMI_WIDE_FOR_.... */
+uint32_t mpmi_state_wide_for(const mpmi_state_loading *l);
 /* Takes everything over, which cannot fail. */
 void mpmi_state_take_over(mpmi_state_loading *l);
 

@@ -332,6 +332,14 @@ static void take_sets(mpmi_state_loading *l) {
   }
 }
 
+uint32_t mpmi_state_wide_for(const mpmi_state_loading *l) {
+  const mpm_stepper *s = l->stepper;
+  uint32_t wide_for = s->layout.wide_for;
+  for (int32_t m = 1; m < s->layout.member_count; ++m)
+    if (l->all.set[m].numbers.body != l->all.set[0].numbers.body) wide_for |= MPMI_WIDE_FOR_TOUCHES;
+  return wide_for;
+}
+
 /* The layout, and how it is shared out. */
 static void take_layout(mpmi_state_loading *l) {
   mpm_stepper *s = l->stepper;
@@ -339,8 +347,10 @@ static void take_layout(mpmi_state_loading *l) {
     mpmi_blocks_clear(&s->layout.blocks);
   else
     mpmi_layout_adopt(&s->layout, &s->settings);
+  s->layout.wide_for = mpmi_state_wide_for(l);
   if (!s->layout.parts) return;
   if (l->parts) mpmi_parts_replace(&s->layout.parts, &l->parts);
+  mpmi_layout_set_margins(s->layout.parts, s->layout.wide_for);
   s->layout.parts->is_stale = l->is_unsorted;
 }
 

@@ -227,9 +227,7 @@ static mpm_status lay_out(mpmi_state_loading *l) {
   if (present) {
     status = mpmi_agree(c, mpmi_parts_create(c, s->grid, &l->parts));
     if (status) return status;
-    l->parts->margin = present->margin;
-    l->parts->names_owners = present->names_owners;
-    l->parts->meets_markers = present->meets_markers;
+    mpmi_layout_set_margins(l->parts, mpmi_state_wide_for(l));
     l->parts->balance = present->balance;
     status = mpmi_state_share(l);
     for (int32_t m = 0; m < s->layout.member_count && !status; ++m)

@@ -60,9 +60,10 @@ typedef struct mpmi_reached {
 
 enum { MPMI_COPIED_PARTY = -2 }; /* in place of a slot: a body at a node of another part */
 typedef struct mpmi_party {
-  int64_t slot;                              /* of the master; -1 for a surface */
-  int32_t body;                              /* or the code of a surface */
-  int32_t surface;                           /* -1 for a body */
+  int64_t slot;       /* of the master; -1 for a surface */
+  int32_t body;       /* or the code of a surface */
+  int32_t surface;    /* -1 for a body */
+  int32_t led, leads; /* it is a light node; light nodes have given to it after contact */
   double arm[3], normal[3], own_velocity[3]; /* of a surface: from its centre to the node */
   int64_t meeting;
   int64_t first_cloud, cloud_count;
@@ -162,8 +163,7 @@ typedef struct mpmi_contact_nodes {
   int64_t coupled_count, coupled_capacity, merged_capacity;
   double *work; /* [tasks][work_each] memory to find normals in */
   int64_t work_capacity, work_each;
-  int32_t measured; /* near surfaces are those of the step */
-  int32_t listed;   /* so are meetings and clouds */
+  int32_t listed; /* near surfaces, meetings and clouds are those of the step */
 } mpmi_contact_nodes;
 
 void mpmi_contact_nodes_free(mpmi_contact_nodes *contact, mpm_context *context);

@@ -57,7 +57,7 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   nodes->has_holders =
       settings->velocity_bc || nodes->prescription.any || (surfaces && !mpmi_is_implicit(settings));
   nodes->has_impulses = nodes->has_holders || ties || contacts || nodes->contact.at_walls;
-  nodes->contact.measured = nodes->contact.listed = 0;
+  nodes->contact.listed = 0;
   nodes->surface_sites.count = 0; /* those of the step before are no use */
   if ((status = mpmi_nodal_reserve(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
       (status = projects ? mpmi_nodal_reserve(c, &nodes->projected, slots, 4) : MPM_OK) ||

@@ -6,6 +6,11 @@
 #include <math.h>
 #include <string.h>
 
+/* Light nodes look at others and give to them (boundary/light_nodes.c): a leader is two steps away, and takes
+ * from others as far away, whose own leaders count, and what lies beside these; and so on once more. Where
+ * bodies touch there are two rounds after contact, too. */
+static const int32_t light_margin = 9, touching_margin = 8;
+
 /* Implicit steps look beyond the nodes of a part's own particles: an inner row has what its outer ones couple
  * with, four nodes away, and that again the inner ones that it moves with, found by the stiffness in reach
  * (implicit/extension.c). The remedy against locking may come later. */
@@ -26,21 +31,32 @@ mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings
   if (mpmi_is_whole(c)) return MPM_OK;
   const mpm_status status = mpmi_parts_create(c, settings->grid, &layout->parts);
   if (status) return status;
-  /* light nodes look at others and give to them (boundary/light_nodes.c): a leader is two steps away, and
-   * takes from others as far away, whose own leaders count, and what lies beside these; and so on once more
-   * */
-  if (settings->grid->family == MPMI_FAMILY_BSPLINE1) layout->parts->margin = 9;
-  if (mpmi_is_implicit(settings)) mpmi_layout_widen(layout, settings);
+  mpmi_layout_widen(layout, mpmi_is_implicit(settings) ? MPMI_WIDE_FOR_IMPLICIT : 0);
   return MPM_OK;
 }
 
-void mpmi_layout_widen(mpmi_layout *layout, const mpmi_settings *settings) {
-  mpmi_parts *parts = layout->parts;
+void mpmi_layout_set_margins(mpmi_parts *parts, uint32_t wide_for) {
+  const mpm_grid *grid = parts->grid;
+  const int32_t touches = (wide_for & MPMI_WIDE_FOR_TOUCHES) != 0, implicit = implicit_margin(grid);
+  parts->margin = parts->meeting_margin = 0;
+  if (grid->family == MPMI_FAMILY_BSPLINE1) {
+    parts->margin = light_margin + touches * touching_margin;
+    parts->meeting_margin = touches * touching_margin;
+  }
+  parts->names_owners = (wide_for & MPMI_WIDE_FOR_IMPLICIT) != 0;
+  if (parts->names_owners && parts->margin < implicit) parts->margin = implicit;
+  if (wide_for & MPMI_WIDE_FOR_MARKERS) parts->margin += mpmi_marker_margin(grid);
+}
+
+void mpmi_layout_widen(mpmi_layout *layout, uint32_t wide_for) {
+  layout->wide_for |= wide_for;
   for (int32_t m = 0; m < layout->member_count; ++m) layout->member[m].set->dirty |= MPMI_DIRTY_PLACE;
-  if (!parts) return;
-  parts->names_owners = 1;
-  parts->margin = implicit_margin(settings->grid);
-  if (parts->meets_markers) parts->margin += mpmi_marker_margin(settings->grid);
+  if (layout->parts) mpmi_layout_set_margins(layout->parts, layout->wide_for);
+}
+
+void mpmi_layout_touches(mpmi_layout *layout, const mpmi_settings *settings) {
+  if (settings->grid->family == MPMI_FAMILY_BSPLINE1 && !(layout->wide_for & MPMI_WIDE_FOR_TOUCHES))
+    mpmi_layout_widen(layout, MPMI_WIDE_FOR_TOUCHES);
 }
 
 void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {

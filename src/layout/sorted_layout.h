@@ -38,6 +38,10 @@ typedef struct mpmi_densities {
   double least, most;
 } mpmi_densities;
 
+/* What asks for nodes beyond those of a part's own particles: implicit steps, markers of surfaces, and bodies
+ * that may touch. */
+enum { MPMI_WIDE_FOR_IMPLICIT = 1, MPMI_WIDE_FOR_MARKERS = 2, MPMI_WIDE_FOR_TOUCHES = 4 };
+
 typedef struct mpmi_layout {
   int32_t member_count, member_capacity;
   mpmi_member *member;
@@ -60,6 +64,7 @@ typedef struct mpmi_layout {
   mpmi_densities *densities; /* [bodies] */
   int64_t densities_capacity;
   int32_t walls_changed;
+  uint32_t wide_for; /* MPMI_WIDE_FOR_...: what has asked for more nodes */
   mpmi_parts *parts; /* of several parts of a problem this one, or NULL */
 } mpmi_layout;
 
@@ -73,9 +78,13 @@ static inline int64_t mpmi_slots(const mpmi_layout *layout) {
 }
 
 mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings);
-/* The steps to come are implicit, and of several parts each has to know more nodes then. They find these when
- * they sort, which is before the next step; with one part, too. */
-void mpmi_layout_widen(mpmi_layout *layout, const mpmi_settings *settings);
+/* Of several parts each has to know more nodes for what is to come. They find these when they sort, which is
+ * before the next step; with one part, too. */
+void mpmi_layout_widen(mpmi_layout *layout, uint32_t wide_for);
+/* Sets how far around a tile a part is to know nodes then. */
+void mpmi_layout_set_margins(mpmi_parts *parts, uint32_t wide_for);
+/* Widens, where it counts, once bodies may touch each other, an obstacle or the plane of a friction wall. */
+void mpmi_layout_touches(mpmi_layout *layout, const mpmi_settings *settings);
 void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings);
 
 /* Particles of a set in a block: those of this part, or in a ghost copies of another part's. Members from

@@ -45,7 +45,8 @@ enum {
   MPMI_NODE_GIVEN = 1, /* a ghost's tile has it, or a node that is tied to it */
   MPMI_NODE_WHOLE = 2, /* all that give to it are known here */
   MPMI_NODE_OWN = 4,   /* a tile of this part has it */
-  MPMI_NODE_LOWER = 8  /* a tile of a part before this one has it */
+  MPMI_NODE_LOWER = 8, /* a tile of a part before this one has it */
+  MPMI_NODE_MEETS = 16 /* what bodies do to each other there counts on this part */
 };
 
 /* What parts settle together in the conditions on the nodes of a projection, once it is there: the meetings
@@ -61,7 +62,7 @@ typedef struct mpmi_parts {
   mpm_context *context;
   const mpm_grid *grid;
   int32_t margin;           /* nodes so far beyond those of a tile are to be whole, too */
-  int32_t meets_markers;    /* there have been surfaces: the margin counts what their markers need */
+  int32_t meeting_margin;   /* at nodes so far beyond those of a tile bodies are to meet, too */
   uint64_t *first;          /* [parts + 1] part r has the keys first[r] <= key < first[r + 1] */
   int32_t is_cut, is_empty; /* empty: no part has particles */
   int32_t is_stale;         /* a sort has not come to its end on all parts */
@@ -202,6 +203,10 @@ static inline int32_t mpmi_owner_of_node(const mpmi_parts *parts, int64_t slot) 
 /* Returns 1 for a node to which particles of this part give, or that none of another part's do. */
 static inline int32_t mpmi_meets_node(const mpmi_parts *parts, int64_t slot) {
   return !parts || (parts->flags[slot] & (MPMI_NODE_GIVEN | MPMI_NODE_OWN)) != MPMI_NODE_GIVEN;
+}
+/* Returns 1 for such a node, and for those around it at which this part has to know what bodies do. */
+static inline int32_t mpmi_meets_at_node(const mpmi_parts *parts, int64_t slot) {
+  return !parts || (parts->flags[slot] & (MPMI_NODE_GIVEN | MPMI_NODE_MEETS)) != MPMI_NODE_GIVEN;
 }
 
 /* ---- early.c ----------------------------------------------------------------------------------------- */

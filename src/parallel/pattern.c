@@ -25,15 +25,20 @@ static stretch tile_of(const mpmi_parts *parts, int64_t coord) {
   return (stretch){low, low + MPMI_BLOCK_EDGE(grid->dim) + 2 * MPMI_RING + grid->width - 1};
 }
 
-static stretch wanted_by(const mpmi_parts *parts, int32_t axis, int64_t coord) {
+/* Returns the nodes of a tile and those within a margin around it, to the mirror images behind a wall. */
+static stretch around(const mpmi_parts *parts, int32_t axis, int64_t coord, int32_t margin) {
   const int64_t cells = parts->grid->desc.cells[axis];
   stretch s = tile_of(parts, coord);
-  s.low -= parts->margin;
-  s.high += parts->margin;
+  s.low -= margin;
+  s.high += margin;
   if (parts->grid->desc.periodic[axis]) return s;
   if (s.low < BEYOND_WALL && s.low > -BEYOND_WALL) s.low = -BEYOND_WALL;
   if (s.high > cells - BEYOND_WALL && s.high <= cells + BEYOND_WALL) s.high = cells + BEYOND_WALL + 1;
   return s;
+}
+
+static stretch wanted_by(const mpmi_parts *parts, int32_t axis, int64_t coord) {
+  return around(parts, axis, coord, parts->margin);
 }
 
 static stretch meet(stretch a, stretch b) {
@@ -300,7 +305,9 @@ static void flag_tile(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_
 }
 
 /* Flags all that a block wants, also a period further on: another body may have nodes there alone. */
-static void flag_wanted(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t flag) {
+/* Flags nodes of all bodies within a margin. */
+static void flag_around(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t margin,
+                        int32_t flag) {
   const mpm_grid *grid = blocks->grid;
   int32_t turns[3] = {0, 0, 0};
   for (int32_t k = 0; k < grid->dim && parts->body_count > 1; ++k) turns[k] = grid->desc.periodic[k] != 0;
@@ -311,7 +318,7 @@ static void flag_wanted(const mpmi_parts *parts, const mpmi_blocks *blocks, int6
         stretch box[3];
         for (int32_t k = 0; k < grid->dim; ++k) {
           const int64_t shift = turn[k] * grid->desc.cells[k];
-          box[k] = wanted_by(parts, k, blocks->coord[block][k]);
+          box[k] = around(parts, k, blocks->coord[block][k], margin);
           box[k] = (stretch){box[k].low + shift, box[k].high + shift};
         }
         for (int32_t i = 0; i < parts->body_count; ++i)
@@ -405,8 +412,9 @@ mpm_status mpmi_pattern_nodes(mpmi_parts *parts, const mpmi_blocks *blocks,
   for (int64_t i = 0; i < parts->ghost_count; ++i) flag_ghost(parts, blocks, &parts->ghost[i]);
   for (int64_t block = 0; block < blocks->count; ++block) {
     if (parts->near[block] != 2) continue;
-    flag_tile(parts, blocks, block, MPMI_NODE_OWN, c->transport.part);
-    flag_wanted(parts, blocks, block, MPMI_NODE_WHOLE);
+    flag_tile(parts, blocks, block, MPMI_NODE_OWN | MPMI_NODE_MEETS, c->transport.part);
+    flag_around(parts, blocks, block, parts->margin, MPMI_NODE_WHOLE);
+    if (parts->meeting_margin) flag_around(parts, blocks, block, parts->meeting_margin, MPMI_NODE_MEETS);
   }
   join_ties(parts, constraints);
   int64_t count = 0;

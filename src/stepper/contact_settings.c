@@ -68,6 +68,7 @@ mpm_status mpm_stepper_set_body(mpm_stepper *s, mpm_particles *particles, int32_
     return status;
   }
   particles->dirty |= MPMI_DIRTY_PLACE;
+  mpmi_layout_touches(&s->layout, &s->settings);
   s->nodes.shown = -1;
   return MPM_OK;
 }

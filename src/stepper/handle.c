@@ -188,7 +188,7 @@ mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
   if (!d.staggered || !s->settings.desc.staggered) s->history.previous_dt = 0.0;
   const int32_t becomes_implicit = d.scheme == MPM_NEWMARK && !mpmi_is_implicit(&s->settings);
   s->settings.desc = d;
-  if (becomes_implicit) mpmi_layout_widen(&s->layout, &s->settings);
+  if (becomes_implicit) mpmi_layout_widen(&s->layout, MPMI_WIDE_FOR_IMPLICIT);
   s->settings.transfer = mpmi_transfer_of(d.transfer);
   s->history.has_sums = 0; /* the angular momentum depends on the transfer */
   return MPM_OK;

@@ -29,6 +29,7 @@ mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, doub
                      "scheme MPM_NEWMARK has no walls of the kind MPM_WALL_FRICTION_NODES: use "
                      "MPM_WALL_FRICTION, or an explicit scheme");
   if (s->settings.wall[face].kind != kind) s->layout.walls_changed = 1;
+  if (row->rubs == MPMI_RUBS_PLANE) mpmi_layout_touches(&s->layout, &s->settings);
   s->settings.wall[face] = (mpmi_wall){kind, row->rubs ? friction : 0.0};
   return MPM_OK;
 }

@@ -34,6 +34,7 @@ mpm_status mpm_stepper_add_obstacle(mpm_stepper *s, mpm_obstacle *obstacle) {
   obstacle->grid = s->grid;
   obstacle->owner = &mpmi_stepper_owns;
   list->obstacle[list->count++] = obstacle;
+  mpmi_layout_touches(&s->layout, &s->settings);
   return MPM_OK;
 }
 

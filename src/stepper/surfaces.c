@@ -3,16 +3,6 @@
 #include "transfer/weights.h"
 
 /* ---- coming and going ---------------------------------------------------------------------------------- */
-/* Nodes around a marker beside a node of a part, and those around the markers beside these, are to be whole
- * there; the next step sorts, and finds who has them. With one part it sorts as well. */
-static void make_whole(mpm_stepper *s) {
-  mpmi_parts *parts = s->layout.parts;
-  for (int32_t m = 0; m < s->layout.member_count; ++m) s->layout.member[m].set->dirty |= MPMI_DIRTY_PLACE;
-  if (!parts || parts->meets_markers) return;
-  parts->meets_markers = 1;
-  parts->margin += mpmi_marker_margin(s->grid);
-}
-
 mpm_status mpm_stepper_add_surface(mpm_stepper *s, mpm_surface *surface) {
   MPMI_ENTER(s, MPMI_STEPPER);
   mpm_context *c = s->context;
@@ -27,7 +17,8 @@ mpm_status mpm_stepper_add_surface(mpm_stepper *s, mpm_surface *surface) {
     return mpmi_fail(c, MPM_E_STATE, "the surface already belongs to %s stepper",
                      surface->stepper == s ? "this" : "another");
   if ((status = MPMI_RESERVE_NEXT(c, list->surface, list->capacity, list->count))) return status;
-  if (!list->count) make_whole(s);
+  /* nodes around a marker beside a node of a part, and around the markers beside these, are whole then */
+  if (!list->count) mpmi_layout_widen(&s->layout, MPMI_WIDE_FOR_MARKERS);
   surface->number = (int32_t)list->count;
   surface->stepper = s;
   surface->owner = &mpmi_stepper_owns;
