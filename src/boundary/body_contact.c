@@ -274,16 +274,16 @@ static double push(mpmi_bound *bound, mpmi_touch *touch) {
 
 /* Keeps a touch as it was found, in a projection without forces: a closed one stays closed both ways. */
 static double keep(mpmi_bound *bound, mpmi_touch *touch) {
-  if (!touch->closed) return 0.0;
+  if (!touch->was_closed) return 0.0;
   const encounter e = encounter_of(bound, touch, 1);
   const double compliance = weighted(&e, touch->normal), approach = mpmi_inner(e.velocity, touch->normal);
   double impulse[3] = {0.0, 0.0, 0.0}, stopped = 0.0;
   for (int32_t c = 0; c < bound->dim; ++c) {
-    const double unit[3] = {c == 0, c == 1, c == 2}, alone = touch->stuck ? weighted(&e, unit) : 0.0;
-    if (touch->stuck && alone > least_compliance(&e)) {
+    const double unit[3] = {c == 0, c == 1, c == 2}, alone = touch->was_stuck ? weighted(&e, unit) : 0.0;
+    if (touch->was_stuck && alone > least_compliance(&e)) {
       impulse[c] = -e.velocity[c] / alone;
       stopped = fmax(stopped, fabs(e.velocity[c]));
-    } else if (!touch->stuck && compliance > least_compliance(&e)) {
+    } else if (!touch->was_stuck && compliance > least_compliance(&e)) {
       impulse[c] = -approach / compliance * touch->normal[c];
       stopped = fabs(approach);
     }
@@ -298,17 +298,22 @@ typedef struct contact_job {
   int32_t keeps, round; /* MPMI_FIRST_ROUND ... */
 } contact_job;
 
-/* Returns 1 where leaders take part that light nodes have given to, and no node that is led. */
+/* Returns 1 where leaders take part that light nodes have given to, and none of these. */
 static int32_t was_given(const mpmi_contact_nodes *contact, const mpmi_touch *touch) {
   const mpmi_party *a = &contact->party[touch->party[0]], *b = &contact->party[touch->party[1]];
-  return (a->leads || b->leads) && !a->led && !b->led;
+  return (a->leads || b->leads) && !a->stays && !b->stays;
 }
 
 static double act_once(const contact_job *job, mpmi_touch *touch) {
+  const int32_t last = job->round == MPMI_LAST_ROUND;
   if (job->keeps) return keep(job->bound, touch);
-  if (touch->open || (job->round == MPMI_LAST_ROUND && !was_given(&job->bound->nodes->contact, touch)))
-    return 0.0;
-  return touch->rule->kind == MPM_CONTACT_TIED ? tie(job->bound, touch) : push(job->bound, touch);
+  if (touch->open || (last && !was_given(&job->bound->nodes->contact, touch))) return 0.0;
+  const double changed =
+      touch->rule->kind == MPM_CONTACT_TIED ? tie(job->bound, touch) : push(job->bound, touch);
+  if (last) return changed;
+  touch->was_closed = touch->closed;
+  touch->was_stuck = touch->stuck;
+  return changed;
 }
 
 /* A touch between nodes that are free is settled at once. */
@@ -329,7 +334,7 @@ static void begin_meeting(const contact_job *job, const mpmi_meeting *meeting) {
     weigh_party(job->bound, &contact->party[meeting->first_party + p], 1);
   for (int64_t i = 0; i < meeting->touch_count && !job->keeps; ++i) {
     mpmi_touch *touch = &contact->touch[meeting->first_touch + i];
-    touch->closed = touch->stuck = 0;
+    touch->closed = touch->stuck = touch->was_closed = touch->was_stuck = 0;
     touch->normal_impulse = touch->dissipation = touch->friction_work = touch->work = 0.0;
     touch->tangential[0] = touch->tangential[1] = touch->tangential[2] = 0.0;
   }
@@ -360,6 +365,7 @@ static double sweep_touches(const contact_job *job, int64_t begin, int64_t count
 static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting) {
   double first = 0.0;
   if (!meeting->touch_count || (meeting->coupled && !job->keeps)) return 0.0;
+  if (job->round == MPMI_LAST_ROUND && !meeting->own) return 0.0;
   begin_meeting(job, meeting);
   if (!meeting->independent) return sweep_touches(job, meeting->first_touch, meeting->touch_count);
   for (int64_t i = 0; i < meeting->touch_count; ++i)

@@ -99,7 +99,7 @@ mpm_status mpmi_ties_unfold(mpmi_bound *bound);
 /* Lets light nodes go with heavier ones beside them, which take their forces. */
 mpm_status mpmi_light_nodes_lead(mpmi_bound *bound);
 /* Does so once more where bodies may touch: contact has changed those that lead, and those that go with
- * them. Parties of contact know then whether they are led, and whether they lead. */
+ * them. Parties of contact know then whether they lead. */
 mpm_status mpmi_light_nodes_lead_again(mpmi_bound *bound);
 
 /* ---- damping.c --------------------------------------------------------------------------------------- */

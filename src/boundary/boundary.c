@@ -8,31 +8,29 @@
 static const double settled = 1e-13;
 enum { ROUNDS = 30 };
 
-static mpm_status settle(mpmi_bound *bound, int32_t keeps, int32_t begins, int32_t goes_on) {
-  const int32_t rubs = mpmi_has_friction_nodes(bound->step->settings);
-  mpm_status status = MPM_OK;
+static mpm_status settle(mpmi_bound *bound, int32_t keeps) {
   double first = 0.0;
+  mpm_status status = keeps ? MPM_OK : mpmi_body_contacts_find(bound);
+  const int32_t rubs = mpmi_has_friction_nodes(bound->step->settings);
   for (int32_t i = 0; i < ROUNDS && !status; ++i) {
     mpmi_contact_round round = {.touches = mpmi_bodies_touch(bound)};
-    status = mpmi_body_contacts_act(bound, keeps, i ? goes_on : begins, &round.most);
-    if (!status && rubs) status = mpmi_friction_walls(bound, keeps, !i && begins == MPMI_FIRST_ROUND, &round);
+    status = mpmi_body_contacts_act(bound, keeps, i ? MPMI_NEXT_ROUND : MPMI_FIRST_ROUND, &round.most);
+    if (!status && rubs) status = mpmi_friction_walls(bound, keeps, !i, &round);
     if (!i) first = round.most;
     if (!rubs || !round.touches || !(round.most > settled * first)) break;
   }
+  if (!status && rubs && bound->step->layout->parts) mpmi_accord_end(bound->step->layout->parts);
   return status;
 }
 
 /* Light nodes go with their leaders once contact has acted on these, and on them. Where particles take the
  * velocities, what they give to their leaders is not to close gaps. */
 static mpm_status act_in_contact(mpmi_bound *bound, int32_t keeps, int32_t is_main) {
-  const int32_t leads = bound->step->settings->grid->family == MPMI_FAMILY_BSPLINE1;
-  mpm_status status = keeps ? MPM_OK : mpmi_body_contacts_find(bound);
-  if (!status) status = settle(bound, keeps, MPMI_FIRST_ROUND, MPMI_NEXT_ROUND);
+  double most;
+  mpm_status status = settle(bound, keeps);
   if (!status) status = mpmi_light_nodes_lead_again(bound);
-  if (!status && is_main && leads && bound->nodes->contact.anywhere)
-    status = settle(bound, keeps, MPMI_LAST_ROUND, MPMI_LAST_ROUND);
-  if (!status && mpmi_has_friction_nodes(bound->step->settings) && bound->step->layout->parts)
-    mpmi_accord_end(bound->step->layout->parts);
+  if (!status && is_main && bound->nodes->light_count)
+    status = mpmi_body_contacts_act(bound, keeps, MPMI_LAST_ROUND, &most);
   return status;
 }
 

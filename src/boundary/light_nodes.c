@@ -4,6 +4,7 @@
  * along lines of nodes, and gives them its force by the transposed rule (docs/theory.md, 7.1): a particle
  * that hardly reaches into a cell strains and pulls as if it had stayed in the cell beside. */
 #include "boundary/light_leaders.h"
+#include "boundary/surface_holds.h"
 
 #include <float.h>
 
@@ -44,7 +45,7 @@ static void find(const light_job *job, mpmi_light_node *node) {
   const mpmi_bound *bound = job->bound;
   const int64_t slot = listed_by(bound, node->slot);
   node->slot = -1;
-  node->count = node->kept = 0;
+  node->count = node->acts = node->kept = 0;
   if (slot < 0 || mpmi_moving_mass(bound, slot) > bound->step->layout->light_cut) return;
   node->slot = slot;
   mpmi_light_find_lines(&job->search, node);
@@ -52,6 +53,7 @@ static void find(const light_job *job, mpmi_light_node *node) {
     go_alone(bound, slot);
     node->slot = -1;
   }
+  node->acts = node->count > 0;
   for (int32_t c = 0; c < bound->dim && node->slot >= 0; ++c) {
     node->before[c] = mpmi_velocity(bound->values, slot)[c];
     node->gain[c] = mpmi_increment_of(bound, slot, c);
@@ -167,7 +169,7 @@ static void look_task(void *data, int64_t k) {
   const light_job *job = data;
   const mpmi_share share = share_of(job, k);
   for (int64_t n = share.begin; n < share.end; ++n)
-    if (job->bound->nodes->light[n].count) look(job, &job->bound->nodes->light[n]);
+    if (job->bound->nodes->light[n].acts) look(job, &job->bound->nodes->light[n]);
 }
 
 static mpm_status run(light_job *job, mpm_task_fn task) {
@@ -200,10 +202,10 @@ static mpm_status lead(light_job *job) {
   for (int32_t round = 0; round < ROUNDS && !status; ++round) {
     status = run(job, look_task);
     for (int64_t n = 0; n < nodes->light_count && !status; ++n)
-      if (nodes->light[n].count) give_rest(bound, &nodes->light[n]);
+      if (nodes->light[n].acts) give_rest(bound, &nodes->light[n]);
   }
   for (int64_t n = 0; n < nodes->light_count && !status; ++n)
-    if (nodes->light[n].count) follow(bound, &nodes->light[n]);
+    if (nodes->light[n].acts) follow(bound, &nodes->light[n]);
   return status;
 }
 
@@ -215,21 +217,54 @@ mpm_status mpmi_light_nodes_lead(mpmi_bound *bound) {
 }
 
 /* ---- once more ----------------------------------------------------------------------------------------- */
-/* Returns the components, as bits, of a node that its holder, or a wall that rubs it, has set. */
+enum { ALL = 7 }; /* components, as bits */
+
+static mpmi_party *party_at(const mpmi_contact_nodes *contact, int64_t slot) {
+  const int64_t cloud = contact->cloud_of[slot];
+  return cloud < 0 ? NULL : &contact->party[contact->cloud[cloud].party];
+}
+
+/* Tells which parties closed ties hold, and forgets who leads. */
+static void mark_tied(const mpmi_contact_nodes *contact) {
+  for (int64_t p = 0; p < contact->party_count; ++p)
+    contact->party[p].tied = contact->party[p].leads = contact->party[p].stays = 0;
+  for (int64_t i = 0; i < contact->touch_count; ++i) {
+    const mpmi_touch *touch = &contact->touch[i];
+    if (touch->rule->kind != MPM_CONTACT_TIED || !touch->was_closed) continue;
+    for (int32_t k = 0; k < 2; ++k) contact->party[touch->party[k]].tied = 1;
+  }
+}
+
+/* Returns the components, as bits, of a node that its holder has set, or a surface along which it slides, a
+ * wall that rubs it, or a tie. */
 static int32_t set_by_others(const mpmi_bound *bound, int64_t slot) {
+  const mpmi_party *party = party_at(&bound->nodes->contact, slot);
   int32_t set = 0;
+  if ((party && party->tied) || mpmi_surface_direction_at(bound, slot) >= 0) return ALL;
+  for (int32_t face = 0; face < 2 * bound->dim; ++face)
+    if (rubs(bound, slot, face)) return ALL;
   for (int32_t c = 0; c < bound->dim; ++c)
     if (mpmi_held_by(bound->nodes, slot, c)) set |= 1 << c;
-  for (int32_t face = 0; face < 2 * bound->dim; ++face)
-    if (rubs(bound, slot, face)) set = 7;
   return set;
 }
 
-/* Finds anew what a node has to give. The forces are a part of its velocity by now. */
+/* Finds anew what a node has to give, where it or one that leads it may touch something. The forces are a
+ * part of its velocity by now. */
 static void begin_again(mpmi_bound *bound, mpmi_light_node *node) {
+  const mpmi_contact_nodes *contact = &bound->nodes->contact;
   const mpmi_leader *leader = leaders_of(bound, node);
+  mpmi_party *party = party_at(contact, node->slot);
+  int32_t touches = party != NULL;
   node->kept = set_by_others(bound, node->slot);
-  for (int32_t k = 0; k < node->count; ++k) node->kept |= set_by_others(bound, leader[k].slot);
+  for (int32_t k = 0; k < node->count; ++k) {
+    touches |= party_at(contact, leader[k].slot) != NULL;
+    node->kept |= set_by_others(bound, leader[k].slot);
+  }
+  node->acts = touches && node->kept != ALL;
+  if (!node->acts) return;
+  if (party) party->stays = 1;
+  for (int32_t k = 0; k < node->count; ++k)
+    if ((party = party_at(contact, leader[k].slot))) party->leads = 1;
   for (int32_t c = 0; c < bound->dim; ++c) {
     double *v = mpmi_velocity(bound->values, node->slot);
     node->gain[c] = mpmi_increment_of(bound, node->slot, c);
@@ -238,35 +273,13 @@ static void begin_again(mpmi_bound *bound, mpmi_light_node *node) {
   }
 }
 
-static mpmi_party *party_at(const mpmi_contact_nodes *contact, int64_t slot) {
-  const int64_t cloud = contact->cloud_of[slot];
-  return cloud < 0 ? NULL : &contact->party[contact->cloud[cloud].party];
-}
-
-/* Tells which parties are led, and which lead. */
-static void mark_parties(const mpmi_bound *bound) {
-  const mpmi_nodes *nodes = bound->nodes;
-  const mpmi_contact_nodes *contact = &nodes->contact;
-  for (int64_t p = 0; p < contact->party_count; ++p) contact->party[p].led = contact->party[p].leads = 0;
-  for (int64_t n = 0; n < nodes->light_count && contact->touch_count; ++n) {
-    const mpmi_light_node *node = &nodes->light[n];
-    if (!node->count) continue;
-    mpmi_party *party = party_at(contact, node->slot);
-    if (party) party->led = 1;
-    for (int32_t k = 0; k < node->count; ++k) {
-      party = party_at(contact, leaders_of(bound, node)[k].slot);
-      if (party) party->leads = 1;
-    }
-  }
-}
-
 mpm_status mpmi_light_nodes_lead_again(mpmi_bound *bound) {
   const mpmi_nodes *nodes = bound->nodes;
-  if (!nodes->light_count || !nodes->contact.anywhere) return MPM_OK;
+  if (!nodes->light_count || !nodes->contact.touch_count) return MPM_OK;
   light_job job = {bound, mpmi_light_search_of(bound)};
+  mark_tied(&nodes->contact);
   for (int64_t n = 0; n < nodes->light_count; ++n)
     if (nodes->light[n].count) begin_again(bound, &nodes->light[n]);
-  mark_parties(bound);
   const mpm_status status = lead(&job);
   return status ? status : mpmi_ties_hold_walls(bound);
 }

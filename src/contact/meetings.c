@@ -46,12 +46,12 @@ static int64_t visit_site(const mpmi_contact_search *search, const mpmi_site *si
   int64_t meetings = 0;
   for (int32_t n = 0; n < b->nodes; ++n) {
     int64_t bodies = 0, surfaces = 0;
-    int32_t counts = 0; /* here, and not only for other parts */
+    int32_t counts = 0, own = 0; /* here, and not only for other parts */
     for (int64_t i = site->blocks.first; i < end; ++i) {
       if (end - i + bodies + site->near_count < 2) break; /* too few are left for a meeting */
       if (!takes_part(search, i * b->nodes + n)) continue;
-      counts |=
-          leads ? mpmi_meets_at_node(parts, i * b->nodes + n) : mpmi_meets_node(parts, i * b->nodes + n);
+      own |= mpmi_meets_node(parts, i * b->nodes + n);
+      counts |= own || (leads && mpmi_meets_at_node(parts, i * b->nodes + n));
       ++bodies;
     }
     for (int64_t i = site->first_near; i < end_near && counts; ++i)
@@ -62,7 +62,8 @@ static int64_t visit_site(const mpmi_contact_search *search, const mpmi_site *si
       contact->meeting[number] = (mpmi_meeting){.first_party = *party,
                                                 .party_count = bodies + surfaces,
                                                 .key = b->key[site->blocks.first],
-                                                .place = n};
+                                                .place = n,
+                                                .own = own};
     for (int64_t i = site->blocks.first; i < end && fill; ++i) {
       const int64_t slot = i * b->nodes + n;
       if (!takes_part(search, slot)) continue;

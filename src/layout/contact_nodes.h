@@ -60,10 +60,11 @@ typedef struct mpmi_reached {
 
 enum { MPMI_COPIED_PARTY = -2 }; /* in place of a slot: a body at a node of another part */
 typedef struct mpmi_party {
-  int64_t slot;       /* of the master; -1 for a surface */
-  int32_t body;       /* or the code of a surface */
-  int32_t surface;    /* -1 for a body */
-  int32_t led, leads; /* it is a light node; light nodes have given to it after contact */
+  int64_t slot;    /* of the master; -1 for a surface */
+  int32_t body;    /* or the code of a surface */
+  int32_t surface; /* -1 for a body */
+  int32_t tied, leads,
+      stays; /* after contact: a closed tie holds it; light nodes gave to it; it is one of these */
   double arm[3], normal[3], own_velocity[3]; /* of a surface: from its centre to the node */
   int64_t meeting;
   int64_t first_cloud, cloud_count;
@@ -91,6 +92,7 @@ typedef struct mpmi_touch {
   double way[3];                          /* an implicit step: of the second party */
   int32_t asked;                          /* for its gap after the step */
   int32_t open, closed, stuck, ambiguous; /* open: it cannot close in this step */
+  int32_t was_closed, was_stuck;          /* before the last round: projections without forces keep to that */
 } mpmi_touch;
 
 typedef struct mpmi_meeting {
@@ -99,6 +101,7 @@ typedef struct mpmi_meeting {
   int32_t independent; /* no body takes part in two touches */
   uint64_t key;        /* of the place of its block, and which of that block's nodes it is */
   int32_t place;
+  int32_t own; /* particles of this part give to the node */
 } mpmi_meeting;
 
 /* What two bodies do to each other in a step, or have done. */

@@ -80,6 +80,7 @@ typedef struct mpmi_light_node {
   int64_t slot;        /* its own; then that of the node to be led, or -1 */
   uint32_t lines;      /* the directions in which its leaders lie, as bits */
   int32_t count, lone; /* of leaders; lone: no line has its second node */
+  int32_t acts;        /* it gives to them and goes with them now */
   int32_t kept;        /* components, as bits, that something else has set */
   int64_t first;       /* of its leaders */
   double part;         /* of what it gives: with this it goes as its leaders do after that */

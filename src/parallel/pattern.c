@@ -304,13 +304,13 @@ static void flag_tile(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_
   flag_box(parts, blocks, blocks->body[block], box, flag, part);
 }
 
-/* Flags all that a block wants, also a period further on: another body may have nodes there alone. */
-/* Flags nodes of all bodies within a margin. */
+/* Flags the nodes of all bodies within a margin around a tile, also a period further on: not all that are there
+ * are tied to nodes here. */
 static void flag_around(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t margin,
                         int32_t flag) {
   const mpm_grid *grid = blocks->grid;
   int32_t turns[3] = {0, 0, 0};
-  for (int32_t k = 0; k < grid->dim && parts->body_count > 1; ++k) turns[k] = grid->desc.periodic[k] != 0;
+  for (int32_t k = 0; k < grid->dim; ++k) turns[k] = grid->desc.periodic[k] != 0;
   for (int32_t x = -turns[0]; x <= turns[0]; ++x)
     for (int32_t y = -turns[1]; y <= turns[1]; ++y)
       for (int32_t z = -turns[2]; z <= turns[2]; ++z) {
