@@ -60,11 +60,12 @@ typedef struct mpmi_reached {
 
 enum { MPMI_COPIED_PARTY = -2 }; /* in place of a slot: a body at a node of another part */
 typedef struct mpmi_party {
-  int64_t slot;    /* of the master; -1 for a surface */
-  int32_t body;    /* or the code of a surface */
-  int32_t surface; /* -1 for a body */
-  int32_t tied, leads,
-      stays; /* after contact: a closed tie holds it; light nodes gave to it; it is one of these */
+  int64_t slot;                              /* of the master; -1 for a surface */
+  int32_t body;                              /* or the code of a surface */
+  int32_t surface;                           /* -1 for a body */
+  int32_t tied;                              /* a closed tie holds it */
+  int32_t leads;                             /* light nodes have given to it after contact */
+  int32_t stays;                             /* it is one of these */
   double arm[3], normal[3], own_velocity[3]; /* of a surface: from its centre to the node */
   int64_t meeting;
   int64_t first_cloud, cloud_count;

@@ -304,8 +304,8 @@ static void flag_tile(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_
   flag_box(parts, blocks, blocks->body[block], box, flag, part);
 }
 
-/* Flags the nodes of all bodies within a margin around a tile, also a period further on: not all that are there
- * are tied to nodes here. */
+/* Flags the nodes of all bodies within a margin around a tile, also a period further on: not all that are
+ * there are tied to nodes here. */
 static void flag_around(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t margin,
                         int32_t flag) {
   const mpm_grid *grid = blocks->grid;

@@ -12,8 +12,8 @@ static method pair_of(int32_t i) {
 }
 
 /* Two discs of 8 cells across that meet aslant as bodies, at three places of the grid. A light node that goes
- * on with what contact alone has left it is strained by what nothing pays for: the discs would gain up to 27 %
- * of their energy. */
+ * on with what contact alone has left it is strained by what nothing pays for: the discs would gain up to
+ * 27 % of their energy. */
 START_TEST(discs_meet_at_light_nodes) {
   static const double shift[PLACES] = {0.0, 0.27, 0.69};
   const method how = pair_of(_i / PLACES);
