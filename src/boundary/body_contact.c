@@ -298,16 +298,22 @@ typedef struct contact_job {
   int32_t keeps, round; /* MPMI_FIRST_ROUND ... */
 } contact_job;
 
-/* Returns 1 where leaders take part that light nodes have given to, and none of these. */
-static int32_t was_given(const mpmi_contact_nodes *contact, const mpmi_touch *touch) {
-  const mpmi_party *a = &contact->party[touch->party[0]], *b = &contact->party[touch->party[1]];
-  return (a->leads || b->leads) && !a->stays && !b->stays;
+/* Returns 1 where leaders take part that light nodes have given to. */
+static int32_t was_given(const mpmi_contact_nodes *contact, const mpmi_meeting *meeting) {
+  int32_t leads = 0;
+  for (int64_t p = 0; p < meeting->party_count; ++p) leads |= contact->party[meeting->first_party + p].leads;
+  return leads;
+}
+
+/* Returns 1 where a light node takes part that goes with others. */
+static int32_t is_led(const mpmi_contact_nodes *contact, const mpmi_touch *touch) {
+  return contact->party[touch->party[0]].stays || contact->party[touch->party[1]].stays;
 }
 
 static double act_once(const contact_job *job, mpmi_touch *touch) {
   const int32_t last = job->round == MPMI_LAST_ROUND;
   if (job->keeps) return keep(job->bound, touch);
-  if (touch->open || (last && !was_given(&job->bound->nodes->contact, touch))) return 0.0;
+  if (touch->open || (last && is_led(&job->bound->nodes->contact, touch))) return 0.0;
   const double changed =
       touch->rule->kind == MPM_CONTACT_TIED ? tie(job->bound, touch) : push(job->bound, touch);
   if (last) return changed;
@@ -365,7 +371,8 @@ static double sweep_touches(const contact_job *job, int64_t begin, int64_t count
 static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting) {
   double first = 0.0;
   if (!meeting->touch_count || (meeting->coupled && !job->keeps)) return 0.0;
-  if (job->round == MPMI_LAST_ROUND && !meeting->own) return 0.0;
+  if (job->round == MPMI_LAST_ROUND && !(meeting->own && was_given(&job->bound->nodes->contact, meeting)))
+    return 0.0;
   begin_meeting(job, meeting);
   if (!meeting->independent) return sweep_touches(job, meeting->first_touch, meeting->touch_count);
   for (int64_t i = 0; i < meeting->touch_count; ++i)

@@ -260,7 +260,7 @@ static void begin_again(mpmi_bound *bound, mpmi_light_node *node) {
     touches |= party_at(contact, leader[k].slot) != NULL;
     node->kept |= set_by_others(bound, leader[k].slot);
   }
-  node->acts = touches && node->kept != ALL;
+  node->acts = touches && (~node->kept & ((1 << bound->dim) - 1));
   if (!node->acts) return;
   if (party) party->stays = 1;
   for (int32_t k = 0; k < node->count; ++k)
