@@ -9,7 +9,7 @@
 #include <float.h>
 
 /* What nodes give leaders that they share is seen in the second round, without which slivers grow by USL. The
- * margin of parts, in mpmi_layout_create, is for so many. */
+ * margin of parts, light_margin in layout/sorted_layout.c, is for so many. */
 enum { ROUNDS = 2 };
 
 /* To wake a task costs as much as some of them. */
