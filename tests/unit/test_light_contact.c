@@ -2,6 +2,8 @@
 #include "obstacle.h"
 #include "walls.h"
 
+#include <string.h>
+
 /* ---- energy -------------------------------------------------------------------------------------------- */
 enum { PAIRS = 6, PLACES = 3 };
 static method pair_of(int32_t i) {
@@ -152,6 +154,59 @@ START_TEST(holders_have_the_last_word) {
 }
 END_TEST
 
+/* Returns copies of the positions and velocities of a body's nodes. */
+static int64_t nodes_of_body(world *w, int32_t body, double *out[2]) {
+  static const char *const field[2] = {"position", "velocity"};
+  int64_t n = 0;
+  for (int32_t f = 0; f < 2; ++f) {
+    mpm_view view = {.struct_size = sizeof view};
+    ck_ok(w, mpm_grid_map(w->stepper, body, field[f], MPM_READ, &view));
+    n = view.count;
+    out[f] = malloc(sizeof(double) * 2 * (size_t)(n + 1));
+    for (int32_t c = 0; c < 2; ++c)
+      for (int64_t i = 0; i < n; ++i)
+        memcpy(&out[f][c * n + i],
+               (const char *)view.data + 8 * (i * view.item_stride + c * view.component_stride), 8);
+    ck_ok(w, mpm_view_release(&view));
+  }
+  return n;
+}
+
+/* Two thin clouds side by side that are tied: light nodes of one that the tie holds do not leave it again. */
+START_TEST(ties_stay_closed) {
+  const method how = pair_of(_i / SEEDS);
+  const double h = 0.1;
+  world w;
+  world_desc desc = world_with(&how, 2, 12, h);
+  desc.sets = 2;
+  world_open(&w, &desc);
+  dice d = {131 + (uint64_t)_i};
+  mpm_contact_desc rule = rule_with(0.0);
+  rule.kind = MPM_CONTACT_TIED;
+  ck_ok(&w, mpm_stepper_set_contact(w.stepper, MPM_BODY_ANY, MPM_BODY_ANY, &rule));
+  for (int32_t m = 0; m < 2; ++m) {
+    ck_ok(&w, mpm_stepper_set_body(w.stepper, w.set[m], m));
+    add_cloud(&w, w.set[m], &d, CLOUD / 2, h, 0.1 + 0.4 * m, 0.7 + 0.4 * m, 1.0);
+  }
+  ck_ok(&w, mpm_step_begin(w.stepper, 1e-4));
+  ck_ok(&w, mpm_step_grid(w.stepper));
+  double *of[2][2];
+  int64_t n[2], shared = 0;
+  for (int32_t m = 0; m < 2; ++m) n[m] = nodes_of_body(&w, m, of[m]);
+  for (int64_t i = 0; i < n[0]; ++i)
+    for (int64_t j = 0; j < n[1]; ++j) {
+      if (hypot(of[0][0][i] - of[1][0][j], of[0][0][n[0] + i] - of[1][0][n[1] + j]) > 1e-6 * h) continue;
+      ++shared;
+      for (int32_t c = 0; c < 2; ++c)
+        ck_within(how.name, of[0][1][c * n[0] + i], of[1][1][c * n[1] + j], 1e-12);
+    }
+  ck_assert_int_gt(shared, 2);
+  for (int32_t m = 0; m < 2; ++m) free(of[m][0]), free(of[m][1]);
+  ck_ok(&w, mpm_step_abort(w.stepper));
+  world_close(&w);
+}
+END_TEST
+
 Suite *light_contact_suite(void) {
   Suite *suite = suite_create("light_contact");
   TCase *tc = tcase_create("light_contact");
@@ -159,6 +214,7 @@ Suite *light_contact_suite(void) {
   tcase_add_loop_test(tc, discs_meet_at_light_nodes, 0, PAIRS * PLACES);
   tcase_add_loop_test(tc, bars_meet_at_light_nodes, 0, PAIRS);
   tcase_add_loop_test(tc, holders_have_the_last_word, 0, PAIRS * SEEDS);
+  tcase_add_loop_test(tc, ties_stay_closed, 0, PAIRS * SEEDS);
   suite_add_tcase(suite, tc);
   return suite;
 }
